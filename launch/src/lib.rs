@@ -1,0 +1,1 @@
+//! Starts, watches and stops nodes; the commands of the operator

@@ -1,0 +1,2 @@
+//! The binary `limn`.
+fn main() {}

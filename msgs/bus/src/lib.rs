@@ -1,0 +1,1 @@
+//! How messages travel: the only crate that names zenoh

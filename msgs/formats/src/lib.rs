@@ -1,0 +1,1 @@
+//! Files: meshes, clouds and scan folders, read and written

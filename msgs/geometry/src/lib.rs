@@ -1,0 +1,1 @@
+//! Space, as several nodes need it

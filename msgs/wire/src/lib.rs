@@ -1,0 +1,1 @@
+//! What travels between the nodes: one file a message

@@ -1,0 +1,1 @@
+//! Pictures of a world that is known exactly

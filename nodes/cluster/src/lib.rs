@@ -1,0 +1,1 @@
+//! The ball clustering of the paper, incremental

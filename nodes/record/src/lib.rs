@@ -1,0 +1,1 @@
+//! Keeps everything that reached the bus

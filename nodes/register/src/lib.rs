@@ -1,0 +1,1 @@
+//! Profiles and poses to points in the world, live

@@ -1,0 +1,1 @@
+//! Subpixel peaks of the laser line

@@ -1,0 +1,1 @@
+//! Signed distance by tangent planes, and its zero set

@@ -1,0 +1,1 @@
+//! Poses from an honest simulated tracker

@@ -1,0 +1,1 @@
+//! Camera ray with laser sheet: points in the frame of the camera

@@ -1,0 +1,1 @@
+//! The eyes of the operator: every stream in Rerun

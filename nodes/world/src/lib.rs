@@ -1,0 +1,1 @@
+//! The known world of the simulator

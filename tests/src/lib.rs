@@ -1,0 +1,1 @@
+//! Whole rigs as real processes on a real bus
