@@ -1,1 +1,32 @@
-//! Space, as several nodes need it
+//! Space, as several nodes need it: the camera, the laser sheet, poses and trajectories, meshes and distances to them.
+//!
+//! Frames: `world` (the tracker's base), `body` (its receiver on the handset), `camera` (x right, y down, z forward). A
+//! transform is named for what it does: `world_from_camera * p_in_camera = p_in_world`. Pixels: u right, v down, (0, 0)
+//! is the centre of the top-left pixel. Metres, radians and nanoseconds throughout; f64 for poses and calibration, f32
+//! for bulk points.
+//!
+//! ```
+//! use geometry::{Camera, LaserSheet};
+//! use nalgebra::{Point2, Vector3};
+//! let camera = Camera { width: 640, height: 480, fx: 800.0, fy: 800.0, cx: 319.5, cy: 239.5, distortion: [0.0; 5] };
+//! let sheet = LaserSheet::new(Vector3::new(0.0, 0.0, 1.0), 0.2).unwrap();
+//! let p_in_camera = sheet.intersect(&camera.direction(Point2::new(319.5, 239.5))).unwrap();
+//! assert!((p_in_camera.z - 0.2).abs() < 1e-12);
+//! ```
+
+mod camera;
+mod mesh;
+mod pose;
+mod rig;
+mod sheet;
+mod trajectory;
+
+pub use camera::{Camera, CameraError};
+pub use mesh::{MeshError, TriangleMesh};
+pub use pose::{interpolate, rigid_from_wire, rigid_to_wire};
+pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
+pub use sheet::{LaserSheet, SheetError};
+pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};
+
+/// Metres from millimetres.
+pub const METRES_PER_MM: f64 = 1e-3;

@@ -1,0 +1,73 @@
+//! Messages to bytes and back: the only file that names bincode.
+
+use crate::Message;
+
+/// No message is larger; a decoder refuses lengths beyond it before it allocates.
+pub const MAX_BYTES: usize = 1 << 29;
+
+fn config() -> impl bincode::config::Config {
+    bincode::config::standard().with_little_endian().with_limit::<MAX_BYTES>()
+}
+
+/// Why bytes are not the message that a reader expects.
+#[derive(Debug, thiserror::Error)]
+pub enum DecodeError {
+    /// Not this message at all.
+    #[error("{bytes} bytes are no {name}: {reason}")]
+    Malformed {
+        /// The expected message.
+        name: &'static str,
+        /// How many came.
+        bytes: usize,
+        /// What the decoder stumbled over.
+        reason: String,
+    },
+    /// Something follows the message.
+    #[error("{left} bytes follow a whole {name}")]
+    Trailing {
+        /// The expected message.
+        name: &'static str,
+        /// How many are left.
+        left: usize,
+    },
+    /// The sender speaks another version.
+    #[error(
+        "expected {expected}, got {got}: the sender and this reader were built from different versions of limn; update the older one"
+    )]
+    Schema {
+        /// What this reader knows.
+        expected: String,
+        /// What came.
+        got: String,
+    },
+}
+
+/// The bytes of a message.
+///
+/// # Panics
+/// Never on data: encoding into memory cannot fail for plain structs.
+#[allow(clippy::expect_used, reason = "a Vec grows; a plain struct has no fallible encoder")]
+pub fn encode<M: Message>(message: &M) -> Vec<u8> {
+    bincode::encode_to_vec(message, config()).expect("plain structs encode into memory")
+}
+
+/// A message from its bytes; all of them must be used.
+pub fn decode<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
+    let malformed = |reason: String| DecodeError::Malformed { name: M::NAME, bytes: bytes.len(), reason };
+    let (message, used) = bincode::decode_from_slice(bytes, config()).map_err(|e| malformed(format!("{e:?}")))?;
+    match bytes.len() - used {
+        0 => Ok(message),
+        left => Err(DecodeError::Trailing { name: M::NAME, left }),
+    }
+}
+
+/// Name, version and layout of a message: `Frame@1:0123456789abcdef`.
+pub fn schema<M: Message>() -> String {
+    format!("{}@{}:{:016x}", M::NAME, M::VERSION, M::HASH)
+}
+
+/// Refuses what another version wrote, before anything is decoded.
+pub fn check_schema<M: Message>(got: &str) -> Result<(), DecodeError> {
+    let expected = schema::<M>();
+    if got == expected { Ok(()) } else { Err(DecodeError::Schema { expected, got: got.to_owned() }) }
+}

@@ -1,0 +1,132 @@
+//! A hash of a message's layout, computed at compile time.
+//!
+//! bincode does not describe itself: a reader with another layout may decode garbage without an error. So name, version
+//! and this hash travel beside the bytes, and are compared before anything is decoded.
+
+/// What has a layout that two machines must agree on.
+pub trait Layout {
+    /// FNV-1a over the names and layouts of the fields.
+    const HASH: u64;
+}
+
+/// What is sent on its own: a named, versioned layout that begins with a header.
+pub trait Message: Layout + bincode::Encode + bincode::Decode<()> + Clone + Send + 'static {
+    /// The name of the struct.
+    const NAME: &'static str;
+    /// Raised when the meaning of a field changes; a change of layout shows in the hash by itself.
+    const VERSION: u32;
+    /// The header of this message.
+    fn header(&self) -> &crate::Header;
+    /// The header, to be stamped by the publisher.
+    fn header_mut(&mut self) -> &mut crate::Header;
+}
+
+const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
+
+/// Folds eight more bytes into a hash.
+pub const fn fold(hash: u64, value: u64) -> u64 {
+    let bytes = value.to_le_bytes();
+    let mut h = hash;
+    let mut i = 0;
+    while i < bytes.len() {
+        h = (h ^ bytes[i] as u64).wrapping_mul(FNV_PRIME);
+        i += 1;
+    }
+    h
+}
+
+/// Folds a name into a hash.
+pub const fn fold_str(hash: u64, text: &str) -> u64 {
+    let bytes = text.as_bytes();
+    let mut h = hash;
+    let mut i = 0;
+    while i < bytes.len() {
+        h = (h ^ bytes[i] as u64).wrapping_mul(FNV_PRIME);
+        i += 1;
+    }
+    fold(h, bytes.len() as u64)
+}
+
+const fn of(name: &str) -> u64 {
+    fold_str(FNV_OFFSET, name)
+}
+
+macro_rules! primitives {
+    ($($t:ty),*) => { $(impl Layout for $t { const HASH: u64 = of(stringify!($t)); })* };
+}
+primitives!(bool, u8, u16, u32, u64, i32, i64, f32, f64, String);
+
+impl<T: Layout> Layout for Vec<T> {
+    const HASH: u64 = fold(of("Vec"), T::HASH);
+}
+impl<T: Layout> Layout for Option<T> {
+    const HASH: u64 = fold(of("Option"), T::HASH);
+}
+impl<T: Layout, const N: usize> Layout for [T; N] {
+    const HASH: u64 = fold(fold(of("array"), T::HASH), N as u64);
+}
+
+/// Declares a struct of plain fields together with its layout hash.
+macro_rules! layout {
+    ($(#[$meta:meta])* pub struct $name:ident { $($(#[$field_meta:meta])* pub $field:ident: $t:ty,)* }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, PartialEq, bincode::Encode, bincode::Decode)]
+        pub struct $name { $($(#[$field_meta])* pub $field: $t,)* }
+        impl $crate::Layout for $name {
+            const HASH: u64 = {
+                #[allow(unused_mut)]
+                let mut h = $crate::fold_str(0xcbf2_9ce4_8422_2325, stringify!($name));
+                $(h = $crate::fold($crate::fold_str(h, stringify!($field)), <$t as $crate::Layout>::HASH);)*
+                h
+            };
+        }
+    };
+    ($(#[$meta:meta])* pub enum $name:ident { $($(#[$v_meta:meta])* $variant:ident,)* }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, bincode::Encode, bincode::Decode)]
+        pub enum $name { $($(#[$v_meta])* $variant,)* }
+        impl $crate::Layout for $name {
+            const HASH: u64 = {
+                let mut h = $crate::fold_str(0xcbf2_9ce4_8422_2325, stringify!($name));
+                $(h = $crate::fold_str(h, stringify!($variant));)*
+                h
+            };
+        }
+    };
+}
+
+/// Declares an element of a [`crate::Bulk`] array: plain old data, copied as bytes.
+macro_rules! element {
+    ($(#[$meta:meta])* pub struct $name:ident { $($(#[$field_meta:meta])* pub $field:ident: $t:ty,)* }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Default, bytemuck::Pod, bytemuck::Zeroable)]
+        #[repr(C)]
+        pub struct $name { $($(#[$field_meta])* pub $field: $t,)* }
+        impl $crate::Layout for $name {
+            const HASH: u64 = {
+                let mut h = $crate::fold_str(0xcbf2_9ce4_8422_2325, stringify!($name));
+                $(h = $crate::fold($crate::fold_str(h, stringify!($field)), <$t as $crate::Layout>::HASH);)*
+                h
+            };
+        }
+    };
+}
+
+/// Makes a declared struct a message: `message!(Frame @ 1);`
+macro_rules! message {
+    ($name:ident @ $version:literal) => {
+        impl $crate::Message for $name {
+            const NAME: &'static str = stringify!($name);
+            const VERSION: u32 = $version;
+            fn header(&self) -> &$crate::Header {
+                &self.header
+            }
+            fn header_mut(&mut self) -> &mut $crate::Header {
+                &mut self.header
+            }
+        }
+    };
+}
+
+pub(crate) use {element, layout, message};

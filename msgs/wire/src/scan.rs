@@ -1,0 +1,37 @@
+//! The points of one picture in the world (paper, section 2.3: R x + p).
+
+use crate::layout::{element, layout, message};
+use crate::{Bulk, Header, Refusal, RigidPose};
+
+element! {
+    /// One measured point.
+    pub struct ScanPoint {
+        /// In the world.
+        pub position_m: [f32; 3],
+        /// Unit vector from the point to the camera.
+        pub to_sensor: [f32; 3],
+        /// One standard deviation of the position along `to_sensor`, pose error not included.
+        pub sigma_m: f32,
+        /// Height of the peak above the background, in grey levels.
+        pub amplitude: f32,
+    }
+}
+
+layout! {
+    /// All points of one picture, in the world.
+    pub struct Scan {
+        /// The stamp is the frame's.
+        pub header: Header,
+        /// Where the camera was.
+        pub world_from_camera: RigidPose,
+        /// One standard deviation of the camera's position, as the tracker states it.
+        pub position_sigma_m: f64,
+        /// One standard deviation of its orientation.
+        pub rotation_sigma_rad: f64,
+        /// The points.
+        pub points: Bulk<ScanPoint>,
+        /// Profiles and points that had no pose, by reason.
+        pub refused: Vec<Refusal>,
+    }
+}
+message!(Scan @ 1);
