@@ -1,0 +1,5 @@
+//! Light, lens and sensor.
+
+mod section;
+
+pub use section::OpticsSection;
