@@ -1,0 +1,137 @@
+//! Receives the messages of one topic.
+
+use crate::ring::Ring;
+use crate::{BusError, SequenceAccount};
+use std::marker::PhantomData;
+use wire::topic::Class;
+use wire::{Message, codec};
+use zenoh::sample::Sample;
+use zenoh::{Session, Wait, pubsub};
+use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig};
+
+pub(crate) enum Line {
+    Plain(#[allow(dead_code, reason = "held for its drop")] pubsub::Subscriber<()>),
+    WithHistory(#[allow(dead_code, reason = "held for its drop")] AdvancedSubscriber<()>),
+}
+
+pub(crate) fn listen(session: &Session, key: &str, history: bool, ring: &Ring) -> Result<Line, BusError> {
+    let ring = ring.clone();
+    let builder = session.declare_subscriber(key.to_owned()).callback(move |sample| ring.push(sample));
+    if history {
+        builder.history(HistoryConfig::default().detect_late_publishers()).wait().map(Line::WithHistory)
+    } else {
+        builder.wait().map(Line::Plain)
+    }
+    .map_err(BusError::zenoh(format!("subscribing to {key}")))
+}
+
+/// What one input has seen.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct InputCounts {
+    /// Messages handed to the node.
+    pub received: u64,
+    /// Gaps in the numbers.
+    pub lost: u64,
+    /// Messages that came again after a restart of their publisher.
+    pub repeated: u64,
+    /// Messages that could not be read.
+    pub refused: u64,
+    /// The latest reason of a refusal.
+    pub reason: Option<String>,
+}
+
+/// The messages of one topic, oldest first.
+pub struct Subscriber<M> {
+    #[allow(dead_code, reason = "held for its drop")]
+    line: Line,
+    ring: Ring,
+    key: String,
+    fresh_only: bool,
+    account: SequenceAccount,
+    counts: InputCounts,
+    message: PhantomData<fn() -> M>,
+}
+
+pub(crate) fn declare<M: Message>(
+    session: &Session,
+    key: &str,
+    class: Class,
+    ring: Ring,
+) -> Result<Subscriber<M>, BusError> {
+    let history = matches!(class, Class::Stream | Class::Latched);
+    Ok(Subscriber {
+        line: listen(session, key, history, &ring)?,
+        ring,
+        key: key.to_owned(),
+        fresh_only: false,
+        account: SequenceAccount::default(),
+        counts: InputCounts::default(),
+        message: PhantomData,
+    })
+}
+
+impl<M: Message> Subscriber<M> {
+    /// Hands on only messages later than all before (by scan, revision and stamp): a restarted publisher sends its
+    /// history again.
+    pub fn fresh_only(mut self) -> Self {
+        self.fresh_only = true;
+        self
+    }
+
+    /// The oldest message that waits. What cannot be read is counted, logged and skipped.
+    #[allow(clippy::should_implement_trait, reason = "a subscription never ends")]
+    pub fn next(&mut self) -> Option<M> {
+        while let Some(sample) = self.ring.pop() {
+            match self.read(&sample) {
+                Ok(Some(message)) => {
+                    self.counts.received += 1;
+                    return Some(message);
+                }
+                Ok(None) => {}
+                Err(error) => {
+                    self.counts.refused += 1;
+                    tracing::error!("{}: refused a message: {error}", sample.key_expr());
+                    self.counts.reason = Some(error.to_string());
+                }
+            }
+        }
+        None
+    }
+
+    /// The newest message that waits; older ones are let go without being counted as lost.
+    pub fn newest(&mut self) -> Option<M> {
+        let mut newest = None;
+        while let Some(message) = self.next() {
+            newest = Some(message);
+        }
+        newest
+    }
+
+    fn read(&mut self, sample: &Sample) -> Result<Option<M>, codec::DecodeError> {
+        let encoding = sample.encoding().to_string();
+        codec::check_schema::<M>(encoding.split_once(';').map_or("", |(_, schema)| schema))?;
+        let message: M = codec::decode(&sample.payload().to_bytes())?;
+        let key = sample.key_expr().as_str();
+        if self.fresh_only && !self.account.is_fresh(key, message.header()) {
+            self.counts.repeated = self.account.repeated;
+            self.account.note(key, message.header());
+            return Ok(None);
+        }
+        let missing = self.account.note(key, message.header());
+        if missing > 0 {
+            self.counts.lost = self.account.lost;
+            tracing::error!("{key}: {missing} messages lost before number {}", message.header().seq);
+        }
+        Ok(Some(message))
+    }
+
+    /// The key, as it was subscribed.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// What this input has seen.
+    pub fn counts(&self) -> &InputCounts {
+        &self.counts
+    }
+}

@@ -1,0 +1,278 @@
+//! A running node.
+
+use crate::health::Account;
+use crate::lifeline::Stopper;
+use crate::log::{self, Lines};
+use crate::pace::{Go, Pace, Window, system_nanos, until};
+use crate::ports::{Input, Output};
+use crate::spec::NodeSpec;
+use anyhow::{Context as _, bail};
+use bus::{Bus, RawSubscriber, Token};
+use std::time::{Duration, Instant};
+use wire::topic::{self, Topic};
+use wire::{Calibration, Clock, Header, Health, LogLine, Message, Phase, Progress, RunPhase};
+
+/// How long a node sleeps at most before it looks whether it was told to stop.
+const NAP: Duration = Duration::from_millis(50);
+const HEALTH_EVERY: Duration = Duration::from_secs(1);
+const SLOW_CONSUMER: Duration = Duration::from_secs(10);
+
+/// One node: its bus, its account, and whether it should stop.
+pub struct Node {
+    spec: NodeSpec,
+    bus: Bus,
+    stopper: Stopper,
+    account: Account,
+    lines: Lines,
+    health: Output<Health>,
+    progress: Output<Progress>,
+    log: Output<LogLine>,
+    phases: Input<RunPhase>,
+    phase: Option<RunPhase>,
+    window: Option<Window>,
+    token: Option<Token>,
+}
+
+impl Node {
+    /// Opens the bus for a process that the launcher started: it stops when stdin closes.
+    pub fn open(spec: NodeSpec) -> anyhow::Result<Self> {
+        let node = Self::open_unattended(spec)?;
+        node.stopper.hold_stdin();
+        Ok(node)
+    }
+
+    /// Opens the bus for a node inside another process, which stops it by its [`Stopper`].
+    pub fn open_unattended(spec: NodeSpec) -> anyhow::Result<Self> {
+        topic::check_name(&spec.instance)?;
+        let lines = log::start(&spec.log);
+        let bus = Bus::open(&spec.bus)?;
+        let name = spec.name();
+        let mut account = Account::new();
+        // What a node says of itself is not what it gives: it has its own count.
+        let aside = || std::sync::Arc::default();
+        let window = match spec.pace {
+            Pace::Fast if !spec.consumers.is_empty() => {
+                let progress = Input::new(bus.subscribe(&topic::progress("**"), 4096)?);
+                Some(Window::new(progress, &spec.consumers, spec.window_ms))
+            }
+            _ => None,
+        };
+        let phases = Input::new(bus.subscribe(&topic::run_phase(), 16)?);
+        account.wakes();
+        Ok(Self {
+            stopper: Stopper::new(bus.ringer()),
+            health: Output::new(bus.publisher(&topic::health(&name))?, aside()),
+            progress: Output::new(bus.publisher(&topic::progress(&name))?, aside()),
+            log: Output::new(bus.publisher(&topic::log(&name))?, aside()),
+            phases,
+            phase: None,
+            window,
+            token: None,
+            account,
+            lines,
+            bus,
+            spec,
+        })
+    }
+
+    /// What the launcher told it.
+    pub fn spec(&self) -> &NodeSpec {
+        &self.spec
+    }
+
+    /// Which one of its kind it is.
+    pub fn instance(&self) -> &str {
+        &self.spec.instance
+    }
+
+    /// Tells this node to stop.
+    pub fn stopper(&self) -> Stopper {
+        self.stopper.clone()
+    }
+
+    /// Opens an input that holds the newest `depth` messages.
+    pub fn input<M: Message>(&mut self, topic: &Topic<M>, depth: usize) -> anyhow::Result<Input<M>> {
+        let input = Input::new(self.bus.subscribe(topic, depth)?);
+        self.account.inputs.push((topic.key.clone(), input.counts()));
+        Ok(input)
+    }
+
+    /// Opens an input of measurements, which come once each: a restarted sender's history is not handed on again.
+    pub fn stream<M: Message>(&mut self, topic: &Topic<M>, depth: usize) -> anyhow::Result<Input<M>> {
+        let input = Input::new(self.bus.subscribe(topic, depth)?.fresh_only());
+        self.account.inputs.push((topic.key.clone(), input.counts()));
+        Ok(input)
+    }
+
+    /// Opens an input of everything whose key matches, undecoded.
+    pub fn raw(&mut self, key_expression: &str, depth: usize) -> anyhow::Result<RawSubscriber> {
+        Ok(self.bus.subscribe_raw(key_expression, depth)?)
+    }
+
+    /// Sends bytes as they are: for replaying.
+    pub fn forward(&self, key: &str, schema: &str, bytes: Vec<u8>) -> anyhow::Result<()> {
+        Ok(self.bus.forward(key, schema, bytes)?)
+    }
+
+    /// Opens an output.
+    pub fn output<M: Message>(&mut self, topic: &Topic<M>) -> anyhow::Result<Output<M>> {
+        Ok(Output::new(self.bus.publisher(topic)?, self.account.sent.clone()))
+    }
+
+    /// Waits for the calibration of a handset; fails when the node is told to stop first.
+    pub fn calibration(&mut self, rig: &str) -> anyhow::Result<Calibration> {
+        let topic = topic::calibration(rig);
+        let mut calibrations = Input::new(self.bus.subscribe(&topic, 4)?);
+        let started = Instant::now();
+        let mut warned = false;
+        loop {
+            if let Some(calibration) = calibrations.newest() {
+                return Ok(calibration);
+            }
+            if !self.wait() {
+                bail!("stopped while waiting for {}", topic.key);
+            }
+            if !warned && started.elapsed() > SLOW_CONSUMER {
+                warned = true;
+                tracing::warn!("still waiting for {}: does the launch file name a rig?", topic.key);
+            }
+        }
+    }
+
+    /// Declares that all inputs are open: sources may start.
+    pub fn ready(&mut self) -> anyhow::Result<()> {
+        self.token = Some(self.bus.declare_ready(&self.spec.name())?);
+        tracing::debug!("ready");
+        Ok(())
+    }
+
+    /// Rests until something has come, or a moment has passed; false when the node was told to stop.
+    pub fn wait(&mut self) -> bool {
+        self.rest(NAP)
+    }
+
+    fn rest(&mut self, nap: Duration) -> bool {
+        self.account.rests();
+        self.bus.wait(nap);
+        self.account.wakes();
+        while let Some(phase) = self.phases.next() {
+            self.phase = Some(phase);
+        }
+        self.say();
+        !self.stopper.is_stopping()
+    }
+
+    /// What the operator said last.
+    pub fn phase(&self) -> Option<&RunPhase> {
+        self.phase.as_ref()
+    }
+
+    /// Counts what was refused.
+    pub fn refuse(&mut self, reason: &str, count: u64) {
+        self.account.refuse(reason, count);
+    }
+
+    /// Notes that everything up to this message is done: sources at a fast pace wait for it.
+    pub fn finished(&mut self, header: &Header) -> anyhow::Result<()> {
+        self.account.finished = *header;
+        let epoch = match (header.clock, self.phase.as_ref()) {
+            (Clock::System, _) => Some(0),
+            (Clock::Scan, Some(phase)) if self.spec.pace == Pace::Real => Some(phase.header.stamp_nanos),
+            (Clock::Scan, _) => None,
+        };
+        if let Some(epoch) = epoch
+            && !header.is_end()
+        {
+            self.account.latencies.note(system_nanos() - epoch - header.stamp_nanos);
+        }
+        let mut reached = header.derived();
+        if header.is_end() {
+            reached.stamp_nanos = i64::MAX / 2;
+        }
+        self.progress.send(Progress { header: reached, node: self.spec.name() })?;
+        self.say();
+        Ok(())
+    }
+
+    /// For a source: waits until the nodes it needs are ready and the operator has chosen a phase. `None` when the node
+    /// was told to stop.
+    pub fn wait_for_go(&mut self, after_scan: Option<u64>) -> anyhow::Result<Option<Go>> {
+        let presence = self.bus.presence()?;
+        loop {
+            let ready = presence.nodes();
+            let all_ready = self.spec.wait_for.iter().all(|node| ready.contains(node));
+            if let Some(run) = &self.phase
+                && all_ready
+                && !matches!(run.header.phase, Phase::Aim | Phase::End)
+                && after_scan.is_none_or(|scan| run.header.scan > scan)
+            {
+                let Header { scan, phase, stamp_nanos, .. } = run.header;
+                if let Some(window) = &mut self.window {
+                    window.start_scan(scan);
+                }
+                return Ok(Some(Go { scan, phase, epoch_nanos: stamp_nanos }));
+            }
+            if !self.wait() {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// For a source: waits until a message with this stamp may be sent. False when the node was told to stop, or the
+    /// operator has ended the scan.
+    pub fn wait_for_turn(&mut self, go: &Go, stamp_nanos: i64) -> bool {
+        let started = Instant::now();
+        let mut warned = false;
+        loop {
+            let ended =
+                self.phase.as_ref().is_some_and(|run| run.header.phase == Phase::End || run.header.scan > go.scan);
+            if ended || self.stopper.is_stopping() {
+                return false;
+            }
+            let nap = match self.spec.pace {
+                Pace::Real => until(go.epoch_nanos, stamp_nanos),
+                Pace::Fast => {
+                    let admitted = self.window.as_mut().is_none_or(|window| window.admits(stamp_nanos));
+                    (!admitted).then_some(NAP)
+                }
+            };
+            let Some(nap) = nap else {
+                self.say();
+                return true;
+            };
+            self.rest(nap.min(NAP));
+            if !warned && self.spec.pace == Pace::Fast && started.elapsed() > SLOW_CONSUMER {
+                warned = true;
+                let slowest = self.window.as_ref().and_then(Window::slowest).unwrap_or("nobody").to_owned();
+                tracing::warn!("waiting for {slowest} for {} s", SLOW_CONSUMER.as_secs());
+            }
+        }
+    }
+
+    /// Sends health when it is due, and the lines of the log. Neither may ever stop the work.
+    fn say(&mut self) {
+        let name = self.spec.name();
+        if let Some(report) = self.account.due(&name, HEALTH_EVERY) {
+            self.send_health(report);
+        }
+        for (level, text) in self.lines.take() {
+            let header = Header { stamp_nanos: system_nanos(), clock: Clock::System, ..Header::default() };
+            let _ = self.log.send(LogLine { header, node: name.clone(), level, text });
+        }
+    }
+
+    fn send_health(&mut self, report: Health) {
+        if let Err(error) = self.health.send(report) {
+            tracing::debug!("health: {error}");
+        }
+    }
+
+    /// The last account, and leaves the bus.
+    pub fn close(mut self) -> anyhow::Result<()> {
+        let report = self.account.report(&self.spec.name());
+        self.send_health(report);
+        self.say();
+        drop(self.token.take());
+        self.bus.close().context("closing")
+    }
+}
