@@ -1,1 +1,22 @@
-//! Files: meshes, clouds and scan folders, read and written
+//! Files: meshes, clouds and scan folders, read and written.
+//!
+//! | what | formats | module |
+//! |---|---|---|
+//! | surfaces, with colours or a texture | OBJ (+ MTL + picture), PLY, STL, GLB, glTF | [`mesh`] |
+//! | points | PLY, XYZ, CSV | cloud |
+//! | scans as pictures and poses | a folder of rig.toml, frames.csv, poses.csv and frames/ | scan_folder |
+//! | pictures | PNG, JPEG | image_file |
+//!
+//! Every reader takes hostile bytes: it answers with a [`FormatError`] that names file and reason, never panics, and
+//! allocates no more than a small multiple of what the file really holds, whatever its header promises.
+//!
+//! Units: numbers are read as they stand in the file, since most formats do not say. What is written is in metres, in
+//! every format, so that a file that was read back can be compared with the scan it came from; PLY, OBJ and STL say so in a
+//! comment. glTF prescribes metres. (Slicers take STL for millimetres: scale by 1000 there.)
+
+mod bytes;
+mod error;
+pub mod mesh;
+mod ply;
+
+pub use error::{FormatError, Reason};
