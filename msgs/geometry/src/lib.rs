@@ -17,6 +17,7 @@
 mod camera;
 mod mesh;
 mod pose;
+mod raster;
 mod rig;
 mod sheet;
 mod trajectory;
@@ -24,6 +25,7 @@ mod trajectory;
 pub use camera::{Camera, CameraError};
 pub use mesh::{MeshError, TriangleMesh};
 pub use pose::{interpolate, rigid_from_wire, rigid_to_wire};
+pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
 pub use sheet::{LaserSheet, SheetError};
 pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};

@@ -1,0 +1,343 @@
+//! What a camera sees of a mesh: z-buffer rasterisation through the real lens (Catmull 1974; edge functions as in Pineda
+//! 1988, "A parallel algorithm for polygon rasterization").
+//!
+//! Vertices are projected with the full distortion and snapped to 1/1024 px, so that the edge functions are exact
+//! integers and two triangles leave no gap between them. Between its corners a triangle is flat on the picture, which
+//! the lens does not keep; so edges longer than [`LONGEST_EDGE_PX`] are halved until they are not, the same way from
+//! both triangles that share one. That bounds the error to a few hundredths of a pixel, and also settles triangles that
+//! pass beside or behind the camera.
+
+use crate::{Camera, TriangleMesh};
+use nalgebra::{Isometry3, Point3};
+
+/// No triangle at a pixel.
+pub const NO_TRIANGLE: u32 = u32::MAX;
+
+/// An edge of at most this length is drawn straight.
+pub const LONGEST_EDGE_PX: f32 = 24.0;
+
+/// What is nearer than this is not drawn.
+const NEAR_M: f32 = 1e-3;
+/// Halvings of one triangle: enough for one that fills the picture, and an end for one that no scene should hold.
+const MOST_HALVINGS: u32 = 50_000;
+/// Halvings in a row; 2^16 in each of a triangle's directions.
+const DEEPEST: u32 = 32;
+/// Steps within a pixel.
+const SUBPIXEL: i32 = 1024;
+const SUBPIXEL_BITS: u32 = SUBPIXEL.trailing_zeros();
+
+/// The nearest triangle at every pixel. Pixel centres are whole numbers.
+#[derive(Debug, Clone, Default)]
+pub struct VisibilityBuffer {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// 1/z in 1/m, row by row; 0 where there is nothing.
+    pub inverse_depth: Vec<f32>,
+    /// Which triangle, row by row; [`NO_TRIANGLE`] where there is none.
+    pub triangle: Vec<u32>,
+    /// Leave out triangles seen from behind (for closed surfaces: twice as fast, same picture). Off at first.
+    pub cull_back_faces: bool,
+    corners: Vec<Corner>,
+}
+
+/// A vertex on the picture.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    /// In steps of 1/1024 px; `NOWHERE` when the lens cannot show it.
+    u: i32,
+    v: i32,
+    /// 1/z in 1/m.
+    inverse_depth: f32,
+}
+
+const NOWHERE: i32 = i32::MIN;
+
+impl VisibilityBuffer {
+    /// An empty buffer.
+    pub fn new(width: usize, height: usize) -> Self {
+        let pixels = width * height;
+        Self { width, height, inverse_depth: vec![0.0; pixels], triangle: vec![NO_TRIANGLE; pixels], ..Self::default() }
+    }
+
+    /// Forgets what was drawn.
+    pub fn clear(&mut self) {
+        self.inverse_depth.fill(0.0);
+        self.triangle.fill(NO_TRIANGLE);
+    }
+
+    /// Depth along the optical axis at a pixel; `None` where nothing was drawn.
+    pub fn depth_m(&self, column: usize, row: usize) -> Option<f32> {
+        let inverse = *self.inverse_depth.get(row * self.width + column)?;
+        (inverse > 0.0).then(|| inverse.recip())
+    }
+
+    /// Where vertex `index` of the mesh drawn last lies on the picture, and its 1/z; `None` where the lens cannot show it.
+    pub fn projected(&self, index: usize) -> Option<[f32; 3]> {
+        let corner = self.corners.get(index).filter(|corner| corner.u != NOWHERE)?;
+        const STEP_PX: f32 = 1.0 / SUBPIXEL as f32;
+        Some([corner.u as f32 * STEP_PX, corner.v as f32 * STEP_PX, corner.inverse_depth])
+    }
+
+    /// Draws a mesh (in world) over what is there. Triangle `i` is entered as `first_triangle + i`. Of two surfaces at
+    /// the same depth the first drawn stays.
+    pub fn draw(
+        &mut self,
+        camera: &Camera,
+        camera_from_world: &Isometry3<f64>,
+        mesh: &TriangleMesh,
+        first_triangle: u32,
+    ) {
+        let lens = Lens::new(camera, camera_from_world);
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        corners.extend(mesh.vertices.iter().map(|p| lens.corner(&lens.in_camera(p))));
+        for (index, triangle) in mesh.triangles.iter().enumerate() {
+            let [i, j, k] = triangle.map(|i| i as usize);
+            let (Some(&a), Some(&b), Some(&c)) = (corners.get(i), corners.get(j), corners.get(k)) else { continue };
+            let id = first_triangle + index as u32;
+            if is_small(&a, &b, &c) {
+                self.fill([a, b, c], id);
+            } else {
+                let [p, q, r] = [i, j, k].map(|i| lens.in_camera(&mesh.vertices[i]));
+                if [p, q, r].iter().all(|p| p.coords.iter().all(|x| x.is_finite())) {
+                    self.split(&lens, [(p, a), (q, b), (r, c)], id, DEEPEST, &mut { MOST_HALVINGS });
+                }
+            }
+        }
+        self.corners = corners;
+    }
+
+    /// Halves the longest edge until all are short.
+    fn split(&mut self, lens: &Lens, [a, b, c]: [(Point3<f32>, Corner); 3], id: u32, depth: u32, left: &mut u32) {
+        if is_small(&a.1, &b.1, &c.1) {
+            return self.fill([a.1, b.1, c.1], id);
+        }
+        if depth == 0 || *left == 0 || lens.sees_nothing_of([&a.0, &b.0, &c.0], self.width, self.height) {
+            return;
+        }
+        *left -= 1;
+        let [ab, bc, ca] = [lens.edge(&a, &b), lens.edge(&b, &c), lens.edge(&c, &a)];
+        let (a, b, c) = if ab >= bc && ab >= ca {
+            (a, b, c)
+        } else if bc >= ca {
+            (b, c, a)
+        } else {
+            (c, a, b)
+        };
+        // The sum of two numbers does not depend on their order, so the neighbour finds the same middle.
+        let middle = Point3::from((a.0.coords + b.0.coords) * 0.5);
+        let middle = (middle, lens.corner(&middle));
+        self.split(lens, [a, middle, c], id, depth - 1, left);
+        self.split(lens, [middle, b, c], id, depth - 1, left);
+    }
+
+    /// Fills the pixels whose centres lie in a triangle of short edges.
+    fn fill(&mut self, [a, mut b, mut c]: [Corner; 3], id: u32) {
+        let last = |size: usize| (size as i32 - 1) * SUBPIXEL;
+        let first_u = ceil_pixel(a.u.min(b.u).min(c.u)).max(0);
+        let last_u = a.u.max(b.u).max(c.u).min(last(self.width)) >> SUBPIXEL_BITS;
+        let first_v = ceil_pixel(a.v.min(b.v).min(c.v)).max(0);
+        let last_v = a.v.max(b.v).max(c.v).min(last(self.height)) >> SUBPIXEL_BITS;
+        if first_u > last_u || first_v > last_v {
+            return;
+        }
+        let mut doubled_area = cross(&a, &b, c.u, c.v);
+        // u to the right and v down: what is counter-clockwise from outside turns the other way on the picture.
+        if doubled_area == 0 || (self.cull_back_faces && doubled_area > 0) {
+            return;
+        }
+        if doubled_area < 0 {
+            (b, c, doubled_area) = (c, b, -doubled_area);
+        }
+        let (u, v) = (first_u << SUBPIXEL_BITS, first_v << SUBPIXEL_BITS);
+        let mut row_weights = [cross(&b, &c, u, v), cross(&c, &a, u, v), cross(&a, &b, u, v)];
+        let step_u = [b.v - c.v, c.v - a.v, a.v - b.v].map(|d| d << SUBPIXEL_BITS);
+        let step_v = [c.u - b.u, a.u - c.u, b.u - a.u].map(|d| d << SUBPIXEL_BITS);
+        // 1/z is linear on the picture of a plane.
+        let (to_b, to_c) = (b.inverse_depth - a.inverse_depth, c.inverse_depth - a.inverse_depth);
+        let scale = 1.0 / doubled_area as f32;
+        let (to_b, to_c) = (to_b * scale, to_c * scale);
+        for row in first_v..=last_v {
+            let mut weights = row_weights;
+            let start = row as usize * self.width;
+            let span = start + first_u as usize..=start + last_u as usize;
+            let (depths, ids) = (&mut self.inverse_depth[span.clone()], &mut self.triangle[span]);
+            for (depth, triangle) in depths.iter_mut().zip(ids) {
+                if weights[0] | weights[1] | weights[2] >= 0 {
+                    let inverse = a.inverse_depth + to_b * weights[1] as f32 + to_c * weights[2] as f32;
+                    if inverse > *depth {
+                        (*depth, *triangle) = (inverse, id);
+                    }
+                }
+                for (weight, step) in weights.iter_mut().zip(step_u) {
+                    *weight += step;
+                }
+            }
+            for (weight, step) in row_weights.iter_mut().zip(step_v) {
+                *weight += step;
+            }
+        }
+    }
+}
+
+/// The first pixel centre at or behind a place.
+fn ceil_pixel(place: i32) -> i32 {
+    (place + (SUBPIXEL - 1)) >> SUBPIXEL_BITS
+}
+
+/// Twice the area of a, b and (u, v): above 0 when they turn from u towards v.
+fn cross(a: &Corner, b: &Corner, u: i32, v: i32) -> i32 {
+    (b.u - a.u) * (v - a.v) - (b.v - a.v) * (u - a.u)
+}
+
+/// All corners on the picture's plane, and all edges short: then no product in `fill` leaves an i32.
+fn is_small(a: &Corner, b: &Corner, c: &Corner) -> bool {
+    const LONGEST: u32 = (LONGEST_EDGE_PX as i32 * SUBPIXEL) as u32;
+    let short = |p: i32, q: i32| p.abs_diff(q) <= LONGEST;
+    a.u != NOWHERE
+        && b.u != NOWHERE
+        && c.u != NOWHERE
+        && short(a.u, b.u)
+        && short(b.u, c.u)
+        && short(c.u, a.u)
+        && short(a.v, b.v)
+        && short(b.v, c.v)
+        && short(c.v, a.v)
+}
+
+/// The camera of one picture, in f32: 1e-4 px at 2000 px of focal length.
+struct Lens {
+    rotation: [[f32; 3]; 3],
+    translation: [f32; 3],
+    focal: [f32; 2],
+    centre: [f32; 2],
+    distortion: [f32; 5],
+    /// Beyond this ideal radius (squared) the lens shows nothing, and its polynomial may fold back.
+    radius_squared: f32,
+}
+
+impl Lens {
+    fn new(camera: &Camera, camera_from_world: &Isometry3<f64>) -> Self {
+        let rotation = camera_from_world.rotation.to_rotation_matrix();
+        Self {
+            rotation: std::array::from_fn(|i| std::array::from_fn(|j| rotation[(i, j)] as f32)),
+            translation: std::array::from_fn(|i| camera_from_world.translation.vector[i] as f32),
+            focal: [camera.fx as f32, camera.fy as f32],
+            centre: [camera.cx as f32, camera.cy as f32],
+            distortion: camera.distortion.map(|k| k as f32),
+            radius_squared: farthest_radius(camera).powi(2),
+        }
+    }
+
+    fn in_camera(&self, p_in_world: &Point3<f32>) -> Point3<f32> {
+        let axis = |i: usize| {
+            let [x, y, z] = self.rotation[i];
+            x * p_in_world.x + y * p_in_world.y + z * p_in_world.z + self.translation[i]
+        };
+        Point3::new(axis(0), axis(1), axis(2))
+    }
+
+    fn corner(&self, p_in_camera: &Point3<f32>) -> Corner {
+        let nowhere = Corner { u: NOWHERE, v: NOWHERE, inverse_depth: 0.0 };
+        let inverse_depth = p_in_camera.z.recip();
+        let (x, y) = (p_in_camera.x * inverse_depth, p_in_camera.y * inverse_depth);
+        let r2 = x * x + y * y;
+        // Written so that NaN is refused too.
+        if !(p_in_camera.z >= NEAR_M && r2 <= self.radius_squared) {
+            return nowhere;
+        }
+        let [k1, k2, p1, p2, k3] = self.distortion;
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        let xd = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+        let yd = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
+        let place = |ideal: f32, axis: usize| self.focal[axis] * ideal + self.centre[axis];
+        let [u, v] = [place(xd, 0), place(yd, 1)].map(|pixel| pixel * SUBPIXEL as f32);
+        const FARTHEST: f32 = (1 << 29) as f32;
+        if u.abs() > FARTHEST || v.abs() > FARTHEST {
+            return nowhere;
+        }
+        let snap = |place: f32| if place < 0.0 { (place - 0.5) as i32 } else { (place + 0.5) as i32 };
+        Corner { u: snap(u), v: snap(v), inverse_depth }
+    }
+
+    /// How long an edge is: on the picture (along the longer axis, as in `is_small`), else by metres, beyond any such.
+    fn edge(&self, a: &(Point3<f32>, Corner), b: &(Point3<f32>, Corner)) -> f32 {
+        if a.1.u == NOWHERE || b.1.u == NOWHERE {
+            const FARTHER: f32 = 1e12;
+            return FARTHER * (1.0 + (a.0 - b.0).norm());
+        }
+        a.1.u.abs_diff(b.1.u).max(a.1.v.abs_diff(b.1.v)) as f32
+    }
+
+    /// All corners on the outer side of one plane that bounds the view.
+    fn sees_nothing_of(&self, corners: [&Point3<f32>; 3], width: usize, height: usize) -> bool {
+        let radius = self.radius_squared.sqrt() * BOUND;
+        let outside = |[x, y]: [f32; 2]| corners.iter().all(|p| x * p.x + y * p.y > radius * p.z);
+        if corners.iter().all(|p| p.z < NEAR_M) || BOUNDS.into_iter().any(outside) {
+            return true;
+        }
+        let shown = corners.map(|p| self.corner(p));
+        let beyond = |outside: &dyn Fn(&Corner) -> bool| shown.iter().all(|c| c.u != NOWHERE && outside(c));
+        // A bent edge bulges by less than this beyond its corners, once it is short enough to matter.
+        const MARGIN: i32 = 64 * SUBPIXEL;
+        let last = |size: usize| (size as i32).saturating_mul(SUBPIXEL).saturating_add(MARGIN);
+        beyond(&|c| c.u < -MARGIN)
+            || beyond(&|c| c.v < -MARGIN)
+            || beyond(&|c| c.u > last(width))
+            || beyond(&|c| c.v > last(height))
+    }
+}
+
+/// Directions of the planes around the view: a polygon of 16 sides...
+const BOUNDS: [[f32; 2]; 16] = {
+    const A: f32 = 0.923_879_5; // cos 22.5 degrees
+    const B: f32 = 0.382_683_43;
+    const C: f32 = std::f32::consts::FRAC_1_SQRT_2;
+    [
+        [1.0, 0.0],
+        [A, B],
+        [C, C],
+        [B, A],
+        [0.0, 1.0],
+        [-B, A],
+        [-C, C],
+        [-A, B],
+        [-1.0, 0.0],
+        [-A, -B],
+        [-C, -C],
+        [-B, -A],
+        [0.0, -1.0],
+        [B, -A],
+        [C, -C],
+        [A, -B],
+    ]
+};
+/// ... whose corners still lie inside the circle that the lens shows (cos 11.25 degrees, rounded down).
+const BOUND: f32 = 0.98;
+
+/// The ideal radius (units of the focal length) that shows a tenth beyond the farthest corner, or the last before the
+/// lens folds back.
+fn farthest_radius(camera: &Camera) -> f32 {
+    const BEYOND: f64 = 1.1;
+    let reach = |focal: f64, centre: f64, size: u32| centre.abs().max((f64::from(size) - centre).abs()) / focal;
+    let corner =
+        reach(camera.fx, camera.cx, camera.width).hypot(reach(camera.fy, camera.cy, camera.height)) * BEYOND + 0.05;
+    let [k1, k2, _, _, k3] = camera.distortion;
+    const STEPS: usize = 1000;
+    let mut last = 0.0;
+    for step in 1..=4 * STEPS {
+        let r = corner * step as f64 / STEPS as f64;
+        let r2 = r * r;
+        let slope = 1.0 + r2 * (3.0 * k1 + r2 * (5.0 * k2 + r2 * 7.0 * k3));
+        if slope <= 0.0 {
+            break;
+        }
+        last = r;
+        if r * (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) >= corner {
+            break;
+        }
+    }
+    last as f32
+}
