@@ -1,0 +1,129 @@
+//! The wiring: takes the newest of everything and shows it.
+
+use crate::cloud::ChunkedCloud;
+use crate::{Config, picture, serve, show};
+use kit::{Input, Node};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use wire::topic;
+use wire::{Cloud, Frame, Health, LogLine, Mesh, Model, Phase, Scan, Stripe, Trajectory};
+
+struct Inputs {
+    frames: Input<Frame>,
+    stripes: Input<Stripe>,
+    trajectories: Input<Trajectory>,
+    scans: Input<Scan>,
+    clouds: Input<Cloud>,
+    meshes: Input<Mesh>,
+    models: Input<Model>,
+    healths: Input<Health>,
+    logs: Input<LogLine>,
+}
+
+impl Inputs {
+    fn open(node: &mut Node, camera: &str) -> anyhow::Result<Self> {
+        Ok(Self {
+            frames: node.input(&topic::frame(camera), 1)?,
+            stripes: node.input(&topic::stripe(camera), 1)?,
+            trajectories: node.input(&topic::trajectory(camera), 8)?,
+            scans: node.input(&topic::scan(camera), 1)?,
+            clouds: node.input(&topic::cloud(), 4096)?,
+            meshes: node.input(&topic::mesh(), 1)?,
+            models: node.input(&topic::textured(), 1)?,
+            healths: node.input(&topic::health("**"), 256)?,
+            logs: node.input(&topic::log("**"), 256)?,
+        })
+    }
+}
+
+/// Admits an event at most so many times a second.
+struct Rate {
+    every: Duration,
+    last: Option<Instant>,
+}
+
+impl Rate {
+    fn new(per_s: f64) -> Self {
+        Self { every: Duration::from_secs_f64(1.0 / per_s), last: None }
+    }
+
+    fn admits(&mut self) -> bool {
+        let due = self.last.is_none_or(|last| last.elapsed() >= self.every);
+        if due {
+            self.last = Some(Instant::now());
+        }
+        due
+    }
+}
+
+/// Shows everything until it is told to stop.
+pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
+    config.check()?;
+    let camera = node.spec().source_of("camera").to_owned();
+    let rig = node.spec().source_of("rig").to_owned();
+    let mut inputs = Inputs::open(&mut node, &camera)?;
+    let served = serve::start(&config)?;
+    let rec = &served.recording;
+    show::world(rec)?;
+    node.ready()?;
+    tracing::info!("look: {}", served.url);
+    let calibration = node.calibration(&rig)?;
+    let shrunk_by = calibration.camera.width.div_ceil(config.picture_width_px.max(1)).max(1);
+    show::calibration(rec, &calibration, shrunk_by)?;
+
+    let (mut pictures, mut surfaces) = (Rate::new(config.pictures_per_s), Rate::new(config.surfaces_per_s));
+    let (mut cloud, mut trail, mut painted) = (ChunkedCloud::default(), Vec::new(), false);
+    let mut reports: BTreeMap<String, (Instant, Health)> = BTreeMap::new();
+    while node.wait() {
+        if pictures.admits() {
+            fast_part(&mut inputs, rec, &config, shrunk_by, &mut trail)?;
+        }
+        while let Some(changes) = inputs.clouds.next() {
+            painted &= changes.header.phase == Phase::End;
+            cloud.take(&changes);
+        }
+        if !painted && surfaces.admits() {
+            show::cloud(rec, &mut cloud)?;
+            if let Some(mesh) = inputs.meshes.newest() {
+                show::mesh(rec, &mesh)?;
+            }
+        }
+        if let Some(model) = inputs.models.newest() {
+            show::model(rec, &model)?;
+            painted = model.header.is_end();
+        }
+        while let Some(report) = inputs.healths.next() {
+            let before = reports.insert(report.node.clone(), (Instant::now(), report.clone()));
+            let seconds = before.as_ref().map_or(0.0, |(at, _)| at.elapsed().as_secs_f64());
+            show::health(rec, &report, before.as_ref().map(|(_, health)| health), seconds)?;
+        }
+        while let Some(line) = inputs.logs.next() {
+            show::log(rec, &line)?;
+        }
+    }
+    rec.flush_blocking()?;
+    node.close()
+}
+
+fn fast_part(
+    inputs: &mut Inputs,
+    rec: &rerun::RecordingStream,
+    config: &Config,
+    shrunk_by: u32,
+    trail: &mut Vec<[f32; 3]>,
+) -> anyhow::Result<()> {
+    if let Some(trajectory) = inputs.trajectories.newest() {
+        show::at(rec, &trajectory.header);
+        show::trajectory(rec, &trajectory, trail)?;
+    }
+    if let Some(picture) = inputs.frames.newest().and_then(|frame| picture::shrink(&frame, config.picture_width_px)) {
+        show::picture(rec, &picture)?;
+    }
+    if let Some(stripe) = inputs.stripes.newest() {
+        show::stripe(rec, &stripe, shrunk_by)?;
+    }
+    if let Some(scan) = inputs.scans.newest() {
+        show::scan(rec, &scan)?;
+    }
+    Ok(())
+}
