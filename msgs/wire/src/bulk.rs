@@ -5,6 +5,7 @@ use bincode::de::{Decode, Decoder, read::Reader};
 use bincode::enc::{Encode, Encoder, write::Writer};
 use bincode::error::{DecodeError, EncodeError};
 use bytemuck::Pod;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 
@@ -51,6 +52,9 @@ impl<T: fmt::Debug> fmt::Debug for Bulk<T> {
 
 impl<T: Layout> Layout for Bulk<T> {
     const HASH: u64 = fold(fold_str(0xcbf2_9ce4_8422_2325, "Bulk"), T::HASH);
+    fn describe(known: &mut BTreeMap<String, String>) -> String {
+        format!("Bulk<{}>", T::describe(known))
+    }
 }
 
 impl<T: Pod> Encode for Bulk<T> {

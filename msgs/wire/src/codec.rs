@@ -1,6 +1,6 @@
 //! Messages to bytes and back: the only file that names bincode.
 
-use crate::Message;
+use crate::{Header, Message};
 
 /// No message is larger; a decoder refuses lengths beyond it before it allocates.
 pub const MAX_BYTES: usize = 1 << 29;
@@ -59,6 +59,13 @@ pub fn decode<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
         0 => Ok(message),
         left => Err(DecodeError::Trailing { name: M::NAME, left }),
     }
+}
+
+/// The header with which every message begins, from the bytes of any of them.
+pub fn header(bytes: &[u8]) -> Result<Header, DecodeError> {
+    let read = bincode::decode_from_slice(bytes, config());
+    let malformed = |e| DecodeError::Malformed { name: "message", bytes: bytes.len(), reason: format!("{e:?}") };
+    read.map(|(header, _used)| header).map_err(malformed)
 }
 
 /// Name, version and layout of a message: `Frame@1:0123456789abcdef`.

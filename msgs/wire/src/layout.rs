@@ -1,12 +1,17 @@
 //! A hash of a message's layout, computed at compile time.
 //!
 //! bincode does not describe itself: a reader with another layout may decode garbage without an error. So name, version
-//! and this hash travel beside the bytes, and are compared before anything is decoded.
+//! and this hash travel beside the bytes, and are compared before anything is decoded. The same fields can be told in words,
+//! so that a recording can still be understood when this program is gone.
+
+use std::collections::BTreeMap;
 
 /// What has a layout that two machines must agree on.
 pub trait Layout {
     /// FNV-1a over the names and layouts of the fields.
     const HASH: u64;
+    /// The name of the type; the types that it is made of are put into `known`, each as its source spells it.
+    fn describe(known: &mut BTreeMap<String, String>) -> String;
 }
 
 /// What is sent on its own: a named, versioned layout that begins with a header.
@@ -53,18 +58,39 @@ const fn of(name: &str) -> u64 {
 }
 
 macro_rules! primitives {
-    ($($t:ty),*) => { $(impl Layout for $t { const HASH: u64 = of(stringify!($t)); })* };
+    ($($t:ty),*) => { $(impl Layout for $t {
+        const HASH: u64 = of(stringify!($t));
+        fn describe(_known: &mut BTreeMap<String, String>) -> String {
+            stringify!($t).to_owned()
+        }
+    })* };
 }
 primitives!(bool, u8, u16, u32, u64, i32, i64, f32, f64, String);
 
 impl<T: Layout> Layout for Vec<T> {
     const HASH: u64 = fold(of("Vec"), T::HASH);
+    fn describe(known: &mut BTreeMap<String, String>) -> String {
+        format!("Vec<{}>", T::describe(known))
+    }
 }
 impl<T: Layout> Layout for Option<T> {
     const HASH: u64 = fold(of("Option"), T::HASH);
+    fn describe(known: &mut BTreeMap<String, String>) -> String {
+        format!("Option<{}>", T::describe(known))
+    }
 }
 impl<T: Layout, const N: usize> Layout for [T; N] {
     const HASH: u64 = fold(fold(of("array"), T::HASH), N as u64);
+    fn describe(known: &mut BTreeMap<String, String>) -> String {
+        format!("[{}; {N}]", T::describe(known))
+    }
+}
+
+/// Notes the definition of a type and returns its name.
+pub(crate) fn define(known: &mut BTreeMap<String, String>, kind: &str, name: &str, lines: &[String]) -> String {
+    let body: String = lines.iter().map(|line| format!("    {line},\n")).collect();
+    known.insert(name.to_owned(), format!("{kind} {name} {{\n{body}}}\n"));
+    name.to_owned()
 }
 
 /// Declares a struct of plain fields together with its layout hash.
@@ -80,6 +106,10 @@ macro_rules! layout {
                 $(h = $crate::fold($crate::fold_str(h, stringify!($field)), <$t as $crate::Layout>::HASH);)*
                 h
             };
+            fn describe(known: &mut std::collections::BTreeMap<String, String>) -> String {
+                let fields = [$((stringify!($field), <$t as $crate::Layout>::describe(known))),*];
+                $crate::layout::define(known, "struct", stringify!($name), fields.map(|(name, of)| format!("{name}: {of}")).as_slice())
+            }
         }
     };
     ($(#[$meta:meta])* pub enum $name:ident { $($(#[$v_meta:meta])* $variant:ident,)* }) => {
@@ -92,6 +122,10 @@ macro_rules! layout {
                 $(h = $crate::fold_str(h, stringify!($variant));)*
                 h
             };
+            fn describe(known: &mut std::collections::BTreeMap<String, String>) -> String {
+                let variants = [$(stringify!($variant).to_owned()),*];
+                $crate::layout::define(known, "enum", stringify!($name), variants.as_slice())
+            }
         }
     };
 }
@@ -109,6 +143,10 @@ macro_rules! element {
                 $(h = $crate::fold($crate::fold_str(h, stringify!($field)), <$t as $crate::Layout>::HASH);)*
                 h
             };
+            fn describe(known: &mut std::collections::BTreeMap<String, String>) -> String {
+                let fields = [$((stringify!($field), <$t as $crate::Layout>::describe(known))),*];
+                $crate::layout::define(known, "struct", stringify!($name), fields.map(|(name, of)| format!("{name}: {of}")).as_slice())
+            }
         }
     };
 }

@@ -24,6 +24,7 @@
 
 mod bulk;
 mod calibration;
+mod catalogue;
 mod cloud;
 pub mod codec;
 mod frame;
@@ -41,6 +42,7 @@ mod trajectory;
 
 pub use bulk::Bulk;
 pub use calibration::{Calibration, CameraIntrinsics, LaserPlane, PeaksPer};
+pub use catalogue::{catalogue, layout_text};
 pub use cloud::{Cloud, CloudPoint, Extent};
 pub use frame::{Frame, Light, PixelFormat};
 pub use header::{Clock, Header, Phase, Refusal, RunPhase};

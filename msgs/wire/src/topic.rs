@@ -100,6 +100,8 @@ topics! {
     health(node) -> Health = "@health/{node}", Trace;
     /// How far a node has come.
     progress(node) -> Progress = "@progress/{node}", Frame;
+    /// What an operator asks for; the launcher answers on [`run_phase`], which it alone publishes.
+    order() -> RunPhase = "@order/phase", Frame;
     /// What a node logs.
     log(node) -> LogLine = "@log/{node}", Trace;
 }

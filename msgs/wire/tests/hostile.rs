@@ -1,0 +1,99 @@
+//! Whatever bytes come: an error, never a panic, never a large allocation.
+
+use proptest::prelude::*;
+use wire::*;
+
+fn reads_or_refuses<M: Message>(bytes: &[u8]) {
+    if let Ok(message) = codec::decode::<M>(bytes) {
+        // What was read is what was written, to the last byte.
+        assert_eq!(codec::decode::<M>(&codec::encode(&message)).is_ok(), true);
+    }
+}
+
+fn all(bytes: &[u8]) {
+    reads_or_refuses::<Frame>(bytes);
+    reads_or_refuses::<Pose>(bytes);
+    reads_or_refuses::<Stripe>(bytes);
+    reads_or_refuses::<Profile>(bytes);
+    reads_or_refuses::<Scan>(bytes);
+    reads_or_refuses::<Trajectory>(bytes);
+    reads_or_refuses::<Cloud>(bytes);
+    reads_or_refuses::<Mesh>(bytes);
+    reads_or_refuses::<Model>(bytes);
+    reads_or_refuses::<Calibration>(bytes);
+    reads_or_refuses::<RunPhase>(bytes);
+    reads_or_refuses::<Health>(bytes);
+    reads_or_refuses::<Progress>(bytes);
+    reads_or_refuses::<LogLine>(bytes);
+}
+
+fn scan(points: usize) -> Scan {
+    Scan {
+        header: Header::default(),
+        world_from_camera: RigidPose::IDENTITY,
+        position_sigma_m: 0.0,
+        rotation_sigma_rad: 0.0,
+        points: Bulk(vec![ScanPoint::default(); points]),
+        refused: vec![],
+    }
+}
+
+proptest! {
+    #[test]
+    fn garbage(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        all(&bytes);
+    }
+
+    #[test]
+    fn a_message_with_one_byte_changed(place in 0usize..300, value: u8) {
+        let mut bytes = codec::encode(&scan(8));
+        let place = place % bytes.len();
+        bytes[place] = value;
+        all(&bytes);
+    }
+
+    #[test]
+    fn a_message_cut_short_or_with_something_behind_it_is_refused(points in 0usize..50, cut in 1usize..100, more in 1usize..9) {
+        let bytes = codec::encode(&scan(points));
+        prop_assert!(codec::decode::<Scan>(&bytes[..bytes.len().saturating_sub(cut)]).is_err());
+        let longer = [bytes, vec![0; more]].concat();
+        let is_trailing = matches!(codec::decode::<Scan>(&longer), Err(codec::DecodeError::Trailing { left, .. }) if left == more);
+        prop_assert!(is_trailing);
+    }
+
+    #[test]
+    fn a_frame_whose_size_contradicts_its_header_is_refused(width in 0u32..9, height in 0u32..9, stride in 0u32..40, bytes in 0usize..400) {
+        let frame = Frame {
+            header: Header::default(), width, height, stride, format: PixelFormat::Rgb8, light: Light { laser: true, lamp: false },
+            exposure_nanos: 0, gain: 1.0, gamma: 1.0, data: Bulk(vec![0; bytes]),
+        };
+        let fits = width > 0 && height > 0 && stride >= 3 * width
+            && bytes >= (stride * (height.max(1) - 1) + 3 * width) as usize && bytes <= (stride * height) as usize;
+        prop_assert_eq!(frame.check().is_ok(), fits);
+    }
+}
+
+#[test]
+fn a_hostile_length_is_refused_before_it_allocates() {
+    // A scan's bytes up to its points, then a length of 2^60.
+    let mut bytes = codec::encode(&scan(0));
+    bytes.truncate(bytes.len() - 2);
+    bytes.extend([253, 0, 0, 0, 0, 0, 0, 0, 16]);
+    assert!(codec::decode::<Scan>(&bytes).is_err());
+}
+
+#[test]
+fn names_of_instances_cannot_be_wildcards() {
+    for bad in ["", "*", "a/b", "**", "@x", "Head", "a b", &"x".repeat(41)] {
+        assert!(topic::check_name(bad).is_err(), "{bad:?}");
+    }
+    assert!(topic::check_name("head_2").is_ok());
+}
+
+#[test]
+fn no_latched_or_kept_topic_lives_under_an_at() {
+    for (key, _, class) in topic::all() {
+        let kept = matches!(class, topic::Class::Latched | topic::Class::Stream);
+        assert!(!(kept && key.contains('@')), "{key}: history cannot find it there");
+    }
+}
