@@ -5,11 +5,14 @@
 
 mod hand;
 pub mod optics;
+mod random;
 mod scene;
+mod shape;
 mod simulation;
 mod tracker;
 
-pub use hand::HandSection;
-pub use scene::{Scene, SceneError, Surface, Texture};
+pub use hand::{Hand, HandError, HandSection};
+pub use scene::{ALL, Kind, ObjectSection, Scene, SceneError, SceneFile, Surface, TableSection, Texture, Up};
+pub use shape::{Pattern, Primitive};
 pub use simulation::{Simulation, SimulationError};
-pub use tracker::TrackerSection;
+pub use tracker::{Tracker, TrackerSection};

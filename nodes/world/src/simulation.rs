@@ -21,14 +21,28 @@ pub enum SimulationError {
     /// An unknown key or a value of the wrong kind.
     #[error("[simulation] {0}")]
     Parse(String),
+    /// A number that cannot be.
+    #[error("[simulation.tracker] {key} = {value}: {wanted}")]
+    Tracker {
+        /// The key.
+        key: &'static str,
+        /// What it holds.
+        value: f64,
+        /// What it should hold.
+        wanted: &'static str,
+    },
 }
 
 impl Simulation {
-    /// Reads the section of a rig; a rig without it has the defaults.
+    /// Reads and checks the section of a rig; a rig without it has the defaults.
     pub fn from_rig(rig: &Rig) -> Result<Self, SimulationError> {
-        match &rig.simulation {
-            None => Ok(Self::default()),
-            Some(table) => table.clone().try_into().map_err(|e: toml::de::Error| SimulationError::Parse(e.to_string())),
-        }
+        let simulation: Self = match &rig.simulation {
+            None => Self::default(),
+            Some(table) => {
+                table.clone().try_into().map_err(|e: toml::de::Error| SimulationError::Parse(e.to_string()))?
+            }
+        };
+        simulation.tracker.check()?;
+        Ok(simulation)
     }
 }

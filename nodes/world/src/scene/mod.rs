@@ -1,7 +1,16 @@
 //! What there is to be seen.
 
+mod build;
+mod error;
+mod file;
+mod table;
+
+pub use error::SceneError;
+pub use file::{ALL, Kind, ObjectSection, SceneFile, TableSection, Up};
+
 use crate::HandSection;
 use geometry::TriangleMesh;
+use std::path::Path;
 
 /// A picture that colours a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,10 +53,48 @@ pub struct Scene {
     pub hand: HandSection,
 }
 
-/// Why a scene cannot be shown.
-#[derive(Debug, thiserror::Error)]
-pub enum SceneError {
-    /// Not a scene file.
-    #[error("{0}")]
-    Parse(String),
+impl Scene {
+    /// The toy cow on a table.
+    pub fn cow() -> Result<Self, SceneError> {
+        Self::of_one(ObjectSection { size_mm: COW_MM, ..ObjectSection::new(Kind::Cow) })
+    }
+
+    /// A mesh of the user's (OBJ, PLY, STL or GLB) on a table, its largest side scaled to `size_mm`.
+    pub fn with_object(file: &Path, size_mm: f64) -> Result<Self, SceneError> {
+        Self::of_one(ObjectSection { size_mm, file: Some(file.to_owned()), ..ObjectSection::new(Kind::Mesh) })
+    }
+
+    /// Reads a scene file; the meshes that it names lie beside it.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let read = std::fs::read_to_string(path);
+        let text = read.map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, folder).map_err(|e| e.in_file(path))
+    }
+
+    /// A scene from the text of its file; relative mesh paths start at `folder`.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, SceneError> {
+        let file: SceneFile = toml::from_str(text).map_err(|e| SceneError::Parse(e.to_string()))?;
+        build::build(&file, folder)
+    }
+
+    /// The thing to be scanned.
+    pub fn subject(&self) -> &Surface {
+        &self.surfaces[self.subject]
+    }
+
+    /// Everything in one mesh, without colours: all that a perfect scan could find.
+    pub fn whole_mesh(&self) -> TriangleMesh {
+        let mut whole = TriangleMesh::default();
+        self.surfaces.iter().for_each(|surface| whole.append(&surface.mesh));
+        whole
+    }
+
+    fn of_one(object: ObjectSection) -> Result<Self, SceneError> {
+        let file = SceneFile { table: Some(TableSection::default()), objects: vec![object], ..SceneFile::default() };
+        build::build(&file, Path::new(""))
+    }
 }
+
+/// The largest side of the cow that comes without a scene file.
+const COW_MM: f64 = 150.0;
