@@ -103,7 +103,7 @@ fn errors_name_file_and_reason() {
         ("a.stl", b"solid t\nfacet\n", "truncated inside the solid"),
         ("a.stl", TETRA_STL.replace("vertex 0 0 1", "vertex 0 0 one").as_bytes(), "line 13: \"one\" is no number"),
         ("a.stl", &[0; 90], "a mesh without faces"),
-        ("a.glb", b"glTF\x02\0\0\0\xff\0\0\0", "truncated inside its 255 bytes (12 are there)"),
+        ("a.glb", b"glTF\x02\0\0\0\xff\0\0\0\x02\0\0\0JSON{", "truncated inside the JSON chunk"),
         ("a.gltf", b"{}", "no valid glTF"),
     ] {
         let complaint = complaint(name, bytes);

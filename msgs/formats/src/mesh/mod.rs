@@ -1,16 +1,22 @@
 //! Surfaces: read from OBJ, PLY, STL, GLB and glTF; written as OBJ, PLY, STL and GLB.
 //!
-//! Read numbers are those of the file; the caller scales. A colour is as a picture stores it (sRGB, 8 bits): glTF's linear
+//! Read numbers are those of the file, unit and axes; the caller scales. A colour is as a picture stores it (sRGB, 8 bits): glTF's linear
 //! factors and vertex colours are converted. Texture coordinates have v down, whatever the format says.
 
 mod glb;
 mod gltf_buffers;
 mod materials;
+mod model;
 mod obj;
 mod picture;
 mod ply;
 mod srgb;
 mod stl;
+mod write;
+mod write_glb;
+
+pub use write::{write_obj, write_ply, write_stl};
+pub use write_glb::write_glb;
 
 use crate::{FormatError, Reason};
 use geometry::TriangleMesh;
@@ -38,6 +44,18 @@ pub struct LoadedMesh {
 /// vertices that are not finite or faces that name no vertex, and on a picture that is named and not there.
 pub fn read(path: &Path) -> Result<LoadedMesh, FormatError> {
     read_bytes(path).map_err(|reason| reason.of(path))
+}
+
+/// [`read`] in the axes of the world: glTF prescribes y up, so what comes from there is turned to z up, and a model that
+/// [`write_glb`] wrote lies again where it was scanned. The other formats prescribe nothing and are left as they are.
+pub fn read_z_up(path: &Path) -> Result<LoadedMesh, FormatError> {
+    let mut loaded = read(path)?;
+    if path.extension().is_some_and(|found| found.eq_ignore_ascii_case("glb") || found.eq_ignore_ascii_case("gltf")) {
+        let z_up = |x: f32, y: f32, z: f32| [x, -z, y];
+        loaded.mesh.vertices.iter_mut().for_each(|p| *p = z_up(p.x, p.y, p.z).into());
+        loaded.mesh.normals.iter_mut().for_each(|n| *n = z_up(n.x, n.y, n.z).into());
+    }
+    Ok(loaded)
 }
 
 fn read_bytes(path: &Path) -> Result<LoadedMesh, Reason> {

@@ -5,8 +5,10 @@
 
 mod body;
 mod header;
+mod write;
 
 use header::Header;
+pub(crate) use write::PlyWriter;
 
 use crate::Reason;
 use crate::bytes::Cursor;

@@ -1,0 +1,80 @@
+//! Pictures: PNG and JPEG.
+
+use crate::{FormatError, Reason, write_whole};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ColorType, DynamicImage, ExtendedColorType, ImageEncoder, ImageReader, RgbImage};
+use std::io::{Cursor, Write};
+use std::path::Path;
+use wire::{Bulk, Frame, Header, Light, PixelFormat};
+
+/// Reads a picture as a frame: grey pictures as [`PixelFormat::Grey8`], all others as [`PixelFormat::Rgb8`], deeper ones
+/// reduced to 8 bits. A picture tells neither its time nor its light: the header is the default one, with the laser on,
+/// exposure unknown (0), gain and gamma 1.
+pub fn read_frame(path: &Path) -> Result<Frame, FormatError> {
+    let decoded = std::fs::read(path).map_err(Reason::from).and_then(|bytes| {
+        Ok(ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(Reason::from)?.decode()?)
+    });
+    Ok(frame(decoded.map_err(|reason| reason.of(path))?))
+}
+
+fn frame(picture: DynamicImage) -> Frame {
+    let (width, height) = (picture.width(), picture.height());
+    let grey = matches!(picture.color(), ColorType::L8 | ColorType::La8 | ColorType::L16 | ColorType::La16);
+    let (format, stride, data) = if grey {
+        (PixelFormat::Grey8, width, picture.into_luma8().into_raw())
+    } else {
+        (PixelFormat::Rgb8, 3 * width, picture.into_rgb8().into_raw())
+    };
+    Frame {
+        header: Header::default(),
+        width,
+        height,
+        stride,
+        format,
+        light: Light { laser: true, lamp: false },
+        exposure_nanos: 0,
+        gain: 1.0,
+        gamma: 1.0,
+        data: Bulk(data),
+    }
+}
+
+/// Writes a picture as PNG.
+pub fn write_rgb(path: &Path, picture: &RgbImage) -> Result<(), FormatError> {
+    write_whole(path, |out| encode_png(out, picture))
+}
+
+/// Writes a frame as PNG: grey or coloured as it is, YUYV turned into red, green, blue.
+pub fn write_frame(path: &Path, frame: &Frame) -> Result<(), FormatError> {
+    frame.check().map_err(|e| Reason::syntax(e).of(path))?;
+    let row_bytes = frame.format.row_bytes(frame.width);
+    let rows = frame.data.chunks(frame.stride as usize).take(frame.height as usize).map(|row| &row[..row_bytes]);
+    let (bytes, colour): (Vec<u8>, _) = match frame.format {
+        PixelFormat::Grey8 => (rows.flatten().copied().collect(), ExtendedColorType::L8),
+        PixelFormat::Rgb8 => (rows.flatten().copied().collect(), ExtendedColorType::Rgb8),
+        PixelFormat::Yuyv => (rows.flat_map(|row| yuyv_row(row, frame.width)).collect(), ExtendedColorType::Rgb8),
+    };
+    write_whole(path, |out| Ok(encoder(out).write_image(&bytes, frame.width, frame.height, colour)?))
+}
+
+/// One row of YUYV as red, green, blue (ITU-R BT.601, full range, as webcams send it).
+fn yuyv_row(row: &[u8], width: u32) -> Vec<u8> {
+    let pixels = row.chunks_exact(4).flat_map(|pair| {
+        let [u, v] = [pair[1], pair[3]].map(|c| f32::from(c) - 128.0);
+        [pair[0], pair[2]].into_iter().flat_map(move |y| {
+            let y = f32::from(y);
+            [y + 1.402 * v, y - 0.344_136 * u - 0.714_136 * v, y + 1.772 * u].map(|c| c.round() as u8)
+        })
+    });
+    pixels.take(3 * width as usize).collect()
+}
+
+/// Camera noise does not compress, so the quick way loses nothing.
+fn encoder<W: Write>(out: W) -> PngEncoder<W> {
+    PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Sub)
+}
+
+pub(crate) fn encode_png(out: impl Write, picture: &RgbImage) -> Result<(), Reason> {
+    let (width, height) = picture.dimensions();
+    Ok(encoder(out).write_image(picture.as_raw(), width, height, ExtendedColorType::Rgb8)?)
+}
