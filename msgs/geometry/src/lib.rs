@@ -14,19 +14,29 @@
 //! assert!((p_in_camera.z - 0.2).abs() < 1e-12);
 //! ```
 
+mod align;
 mod camera;
+mod distance;
+mod index;
 mod mesh;
 mod pose;
 mod raster;
 mod rig;
+mod sample;
 mod sheet;
 mod trajectory;
 
+pub use align::{AlignError, Alignment, align};
 pub use camera::{Camera, CameraError};
+pub use distance::{
+    COMPARE_SAMPLES, CompareError, Comparison, Completeness, Distances, WITHIN_MM, Within, compare, truth_samples,
+};
+pub use index::{Closest, Hit, MeshIndex};
 pub use mesh::{MeshError, TriangleMesh};
 pub use pose::{interpolate, rigid_from_wire, rigid_to_wire};
 pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
+pub use sample::{SurfaceSample, sample_surface};
 pub use sheet::{LaserSheet, SheetError};
 pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};
 
