@@ -1,0 +1,44 @@
+//! What the operator can set.
+
+use serde::{Deserialize, Serialize};
+
+/// `[cluster]` in a launch file.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// D of the paper: the radius of a ball. Points of a ball are averaged, so it should be no smaller than the noise and
+    /// no larger than the finest detail that is to survive. Default 0.0008.
+    pub ball_radius_m: f64,
+    /// T of the paper: a ball with fewer points is an outlier. Default 4.
+    pub least_points: u32,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self { ball_radius_m: 0.8e-3, least_points: 4 }
+    }
+}
+
+/// A configuration that cannot be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    /// Too small, too large or NaN.
+    #[error("ball_radius_m = {0}: from 0.00001 to 0.1 is understood")]
+    BallRadius(f64),
+    /// Then every ball would be an outlier, or none could be.
+    #[error("least_points = 0: a ball has at least the point that founded it; say 1 to keep them all")]
+    LeastPoints,
+}
+
+impl Config {
+    /// Refuses what cannot work.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        if !(1e-5..=0.1).contains(&self.ball_radius_m) {
+            return Err(ConfigError::BallRadius(self.ball_radius_m));
+        }
+        if self.least_points == 0 {
+            return Err(ConfigError::LeastPoints);
+        }
+        Ok(())
+    }
+}
