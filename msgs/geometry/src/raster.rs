@@ -135,17 +135,17 @@ impl VisibilityBuffer {
 
     /// Fills the pixels whose centres lie in a triangle of short edges.
     fn fill(&mut self, [a, mut b, mut c]: [Corner; 3], id: u32) {
+        let mut doubled_area = cross(&a, &b, c.u, c.v);
+        // u to the right and v down: what is counter-clockwise from outside turns the other way on the picture.
+        if doubled_area == 0 || (self.cull_back_faces && doubled_area > 0) {
+            return;
+        }
         let last = |size: usize| (size as i32 - 1) * SUBPIXEL;
         let first_u = ceil_pixel(a.u.min(b.u).min(c.u)).max(0);
         let last_u = a.u.max(b.u).max(c.u).min(last(self.width)) >> SUBPIXEL_BITS;
         let first_v = ceil_pixel(a.v.min(b.v).min(c.v)).max(0);
         let last_v = a.v.max(b.v).max(c.v).min(last(self.height)) >> SUBPIXEL_BITS;
         if first_u > last_u || first_v > last_v {
-            return;
-        }
-        let mut doubled_area = cross(&a, &b, c.u, c.v);
-        // u to the right and v down: what is counter-clockwise from outside turns the other way on the picture.
-        if doubled_area == 0 || (self.cull_back_faces && doubled_area > 0) {
             return;
         }
         if doubled_area < 0 {
@@ -156,28 +156,27 @@ impl VisibilityBuffer {
         let step_u = [b.v - c.v, c.v - a.v, a.v - b.v].map(|d| d << SUBPIXEL_BITS);
         let step_v = [c.u - b.u, a.u - c.u, b.u - a.u].map(|d| d << SUBPIXEL_BITS);
         // 1/z is linear on the picture of a plane.
-        let (to_b, to_c) = (b.inverse_depth - a.inverse_depth, c.inverse_depth - a.inverse_depth);
         let scale = 1.0 / doubled_area as f32;
-        let (to_b, to_c) = (to_b * scale, to_c * scale);
-        for row in first_v..=last_v {
-            let mut weights = row_weights;
-            let start = row as usize * self.width;
-            let span = start + first_u as usize..=start + last_u as usize;
-            let (depths, ids) = (&mut self.inverse_depth[span.clone()], &mut self.triangle[span]);
+        let (to_b, to_c) = ((b.inverse_depth - a.inverse_depth) * scale, (c.inverse_depth - a.inverse_depth) * scale);
+        let along = |weights: [i32; 3]| to_b * weights[1] as f32 + to_c * weights[2] as f32;
+        let (depth_step_u, depth_step_v) = (along(step_u), along(step_v));
+        let mut row_depth = a.inverse_depth + along(row_weights);
+        let columns = (last_u - first_u) as usize + 1;
+        let mut start = first_v as usize * self.width + first_u as usize;
+        for _ in first_v..=last_v {
+            let ([mut wa, mut wb, mut wc], mut inverse) = (row_weights, row_depth);
+            let depths = &mut self.inverse_depth[start..start + columns];
+            let ids = &mut self.triangle[start..start + columns];
             for (depth, triangle) in depths.iter_mut().zip(ids) {
-                if weights[0] | weights[1] | weights[2] >= 0 {
-                    let inverse = a.inverse_depth + to_b * weights[1] as f32 + to_c * weights[2] as f32;
-                    if inverse > *depth {
-                        (*depth, *triangle) = (inverse, id);
-                    }
+                if (wa | wb | wc) >= 0 && inverse > *depth {
+                    (*depth, *triangle) = (inverse, id);
                 }
-                for (weight, step) in weights.iter_mut().zip(step_u) {
-                    *weight += step;
-                }
+                (wa, wb, wc) = (wa + step_u[0], wb + step_u[1], wc + step_u[2]);
+                inverse += depth_step_u;
             }
-            for (weight, step) in row_weights.iter_mut().zip(step_v) {
-                *weight += step;
-            }
+            row_weights = std::array::from_fn(|i| row_weights[i] + step_v[i]);
+            row_depth += depth_step_v;
+            start += self.width;
         }
     }
 }
@@ -195,16 +194,10 @@ fn cross(a: &Corner, b: &Corner, u: i32, v: i32) -> i32 {
 /// All corners on the picture's plane, and all edges short: then no product in `fill` leaves an i32.
 fn is_small(a: &Corner, b: &Corner, c: &Corner) -> bool {
     const LONGEST: u32 = (LONGEST_EDGE_PX as i32 * SUBPIXEL) as u32;
-    let short = |p: i32, q: i32| p.abs_diff(q) <= LONGEST;
-    a.u != NOWHERE
-        && b.u != NOWHERE
-        && c.u != NOWHERE
-        && short(a.u, b.u)
-        && short(b.u, c.u)
-        && short(c.u, a.u)
-        && short(a.v, b.v)
-        && short(b.v, c.v)
-        && short(c.v, a.v)
+    // NOWHERE is so far from everything that it is never short, but from itself.
+    let across = a.u.max(b.u).max(c.u).abs_diff(a.u.min(b.u).min(c.u));
+    let down = a.v.max(b.v).max(c.v).abs_diff(a.v.min(b.v).min(c.v));
+    across <= LONGEST && down <= LONGEST && a.u != NOWHERE
 }
 
 /// The camera of one picture, in f32: 1e-4 px at 2000 px of focal length.
