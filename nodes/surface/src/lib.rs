@@ -1,1 +1,23 @@
-//! Signed distance by tangent planes, and its zero set
+//! x
+mod cap;
+mod cases;
+mod clean;
+mod config;
+mod field;
+mod grid;
+mod holes;
+mod marching;
+mod model;
+mod orient;
+mod plane;
+mod quadric;
+mod refine;
+mod sample;
+mod scale;
+mod sheet;
+mod slivers;
+mod surfel;
+mod surfer;
+mod topology;
+pub use config::{Config, ConfigError};
+pub use surfer::{Surfer, surface_from_points};
