@@ -1,0 +1,89 @@
+//! Who may know whom: read from `cargo metadata`, so that it cannot drift from ARCHITECTURE.md unseen.
+
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+/// Library of the simulator's world: no node.
+const WORLD: &str = "world";
+const NODES: [&str; 12] = [
+    "camera_sim",
+    "tracker_sim",
+    "stripe",
+    "triangulate",
+    "register",
+    "cluster",
+    "surface",
+    "paint",
+    "export",
+    "record",
+    "replay",
+    "view",
+];
+
+/// Each member of the workspace with what it depends on (not for its tests), ours and others'.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.toml");
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path", manifest])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = |package: &Value| {
+        let all = package["dependencies"].as_array().unwrap();
+        let real = all.iter().filter(|dependency| dependency["kind"] != "dev");
+        real.map(|dependency| dependency["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let packages = metadata["packages"].as_array().unwrap();
+    packages.iter().map(|package| (package["name"].as_str().unwrap().to_owned(), names(package))).collect()
+}
+
+#[test]
+fn each_crate_knows_only_what_it_may() {
+    let all = dependencies();
+    let ours: BTreeSet<&str> = all.keys().map(String::as_str).collect();
+    let mut allowed: BTreeMap<&str, Vec<&str>> = BTreeMap::from([
+        ("wire", vec![]),
+        ("geometry", vec!["wire"]),
+        ("formats", vec!["wire", "geometry"]),
+        ("bus", vec!["wire"]),
+        ("kit", vec!["wire", "bus"]),
+        (WORLD, vec!["wire", "geometry", "formats"]),
+        ("report", vec!["wire", "geometry", "formats"]),
+    ]);
+    for node in NODES {
+        allowed.insert(node, vec!["wire", "geometry", "formats", "kit"]);
+    }
+    allowed.insert("camera_sim", vec!["wire", "geometry", "formats", "kit", WORLD]);
+    allowed.insert("tracker_sim", vec!["wire", "geometry", "formats", "kit", WORLD]);
+    for (name, dependencies) in &all {
+        let Some(allowed) = allowed.get(name.as_str()) else {
+            assert!(matches!(name.as_str(), "limn" | "system_tests"), "{name} is not in ARCHITECTURE.md's table");
+            continue;
+        };
+        for dependency in dependencies.iter().filter(|dependency| ours.contains(dependency.as_str())) {
+            assert!(allowed.contains(&dependency.as_str()), "{name} must not know {dependency}");
+        }
+    }
+}
+
+#[test]
+fn what_is_heavy_or_may_change_is_named_by_one_crate_alone() {
+    let owners =
+        [("zenoh", "bus"), ("zenoh-ext", "bus"), ("bincode", "wire"), ("rerun", "view"), ("parry3d", "geometry")];
+    for (name, dependencies) in dependencies() {
+        for (library, owner) in owners {
+            assert!(!dependencies.contains(library) || name == owner, "{name} names {library}; only {owner} may");
+        }
+    }
+}
+
+#[test]
+fn no_node_reads_the_truth() {
+    let nodes = concat!(env!("CARGO_MANIFEST_DIR"), "/../nodes");
+    for node in NODES.iter().filter(|node| **node != "camera_sim") {
+        let wiring = std::fs::read_to_string(format!("{nodes}/{node}/src/node.rs")).unwrap();
+        assert!(!wiring.contains("truth"), "{node} must not know the truth");
+    }
+}
