@@ -2,19 +2,31 @@
 
 use crate::{FormatError, Reason, write_whole};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ColorType, DynamicImage, ExtendedColorType, ImageEncoder, ImageReader, RgbImage};
+use image::{ColorType, DynamicImage, ExtendedColorType, ImageEncoder, ImageError, ImageReader, Limits, RgbImage};
 use std::io::{Cursor, Write};
 use std::path::Path;
 use wire::{Bulk, Frame, Header, Light, PixelFormat};
+
+/// Deflate and JPEG give at most about a thousand bytes for one; a larger promise is a lie.
+const MOST_FROM_A_BYTE: u64 = 2048;
+/// No picture is larger.
+const MAX_BYTES: u64 = 1 << 29;
 
 /// Reads a picture as a frame: grey pictures as [`PixelFormat::Grey8`], all others as [`PixelFormat::Rgb8`], deeper ones
 /// reduced to 8 bits. A picture tells neither its time nor its light: the header is the default one, with the laser on,
 /// exposure unknown (0), gain and gamma 1.
 pub fn read_frame(path: &Path) -> Result<Frame, FormatError> {
-    let decoded = std::fs::read(path).map_err(Reason::from).and_then(|bytes| {
-        Ok(ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(Reason::from)?.decode()?)
-    });
+    let decoded = std::fs::read(path).map_err(Reason::from).and_then(|bytes| Ok(decode(&bytes)?));
     Ok(frame(decoded.map_err(|reason| reason.of(path))?))
+}
+
+/// A picture from its bytes. What its header promises is held against what can come out of so many bytes.
+pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, ImageError> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some((bytes.len() as u64).saturating_mul(MOST_FROM_A_BYTE).clamp(1 << 20, MAX_BYTES));
+    reader.limits(limits);
+    reader.decode()
 }
 
 fn frame(picture: DynamicImage) -> Frame {

@@ -1,8 +1,7 @@
 //! The pictures that a mesh file names or holds.
 
-use crate::Reason;
-use image::{ImageReader, RgbImage};
-use std::io::Cursor;
+use crate::{Reason, image_file};
+use image::RgbImage;
 use std::path::Path;
 
 /// A picture beside the mesh file, by the name that the file gives it.
@@ -14,7 +13,7 @@ pub(super) fn beside(folder: &Path, named: &str) -> Result<RgbImage, Reason> {
     decode(&bytes).map_err(|e| companion(e.to_string()))
 }
 
-/// A picture from its bytes; the decoder's own limits keep a hostile header from allocating.
+/// A picture from its bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<RgbImage, image::ImageError> {
-    Ok(ImageReader::new(Cursor::new(bytes)).with_guessed_format()?.decode()?.into_rgb8())
+    Ok(image_file::decode(bytes)?.into_rgb8())
 }
