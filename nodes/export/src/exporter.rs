@@ -1,0 +1,122 @@
+//! Streams to files.
+
+use crate::held::HeldCloud;
+use crate::{Config, ConfigError};
+use formats::mesh::LoadedMesh;
+use formats::{FormatError, Reason};
+use geometry::TriangleMesh;
+use std::path::{Path, PathBuf};
+use std::{fmt, fs, io};
+use wire::{Cloud, Mesh, Model};
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// Bad choices.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The folder cannot be made.
+    #[error("{}: cannot be made: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// A file cannot be written, or there is nothing to write.
+    #[error(transparent)]
+    File(#[from] FormatError),
+}
+
+/// A file that has been written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// The file.
+    pub path: PathBuf,
+    /// What is in it, in words.
+    pub holds: String,
+    /// Its size.
+    pub bytes: u64,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}, {} bytes", self.path.display(), self.holds, self.bytes)
+    }
+}
+
+/// Holds what comes until it is final, then writes it.
+#[derive(Debug)]
+pub struct Exporter {
+    folder: PathBuf,
+    cloud: HeldCloud,
+}
+
+impl Exporter {
+    /// Makes the folder.
+    pub fn new(config: Config) -> Result<Self, ExportError> {
+        config.check()?;
+        let folder = config.folder;
+        fs::create_dir_all(&folder).map_err(|source| ExportError::Folder { path: folder.clone(), source })?;
+        Ok(Self { folder, cloud: HeldCloud::default() })
+    }
+
+    /// Takes the cloud or what of it changed; writes cloud.ply when it was the last message. Otherwise nothing is written.
+    pub fn cloud(&mut self, cloud: &Cloud) -> Result<Vec<Written>, ExportError> {
+        self.cloud.take(cloud);
+        if cloud.header.is_end() { self.save_cloud() } else { Ok(Vec::new()) }
+    }
+
+    /// Writes the cloud as it stands, for a scan that was stopped before its end.
+    pub fn save_cloud(&self) -> Result<Vec<Written>, ExportError> {
+        let (path, points) = (self.folder.join("cloud.ply"), self.cloud.points());
+        formats::cloud::write_ply(&path, &points)?;
+        Ok(vec![written(path, format!("{} points", points.len()))?])
+    }
+
+    /// Takes the surface; writes mesh.ply and mesh.stl when it is the final one.
+    pub fn mesh(&self, mesh: &Mesh) -> Result<Vec<Written>, ExportError> {
+        if !mesh.header.is_end() {
+            return Ok(Vec::new());
+        }
+        let mesh = TriangleMesh::from(mesh);
+        let (ply, stl) = (self.folder.join("mesh.ply"), self.folder.join("mesh.stl"));
+        refuse_empty(&mesh, &ply)?;
+        formats::mesh::write_ply(&ply, &mesh)?;
+        formats::mesh::write_stl(&stl, &mesh)?;
+        let holds = format!("{} triangles", mesh.triangles.len());
+        Ok(vec![written(ply, holds.clone())?, written(stl, holds)?])
+    }
+
+    /// Takes the painted surface; writes model.glb and model.obj (with model.mtl and model.png) when it is the final one.
+    pub fn model(&self, model: &Model) -> Result<Vec<Written>, ExportError> {
+        if !model.header.is_end() {
+            return Ok(Vec::new());
+        }
+        let (glb, obj) = (self.folder.join("model.glb"), self.folder.join("model.obj"));
+        refuse_empty(&TriangleMesh::from(&model.mesh), &glb)?;
+        let LoadedMesh { mesh, texture } = LoadedMesh::try_from(model).map_err(|reason: Reason| reason.of(&glb))?;
+        formats::mesh::write_glb(&glb, &mesh, texture.as_ref())?;
+        formats::mesh::write_obj(&obj, &mesh, texture.as_ref())?;
+        let holds = format!("{} triangles", mesh.triangles.len());
+        let mut files = vec![written(glb, holds.clone())?, written(obj.clone(), holds)?];
+        if texture.is_some() {
+            files.push(written(obj.with_extension("mtl"), "the material".into())?);
+            let texels = format!("{}x{} texels", model.texture_width, model.texture_height);
+            files.push(written(obj.with_extension("png"), texels)?);
+        }
+        Ok(files)
+    }
+}
+
+/// An empty scan is told as what it is, not as a mesh without faces.
+fn refuse_empty(mesh: &TriangleMesh, path: &Path) -> Result<(), FormatError> {
+    if mesh.triangles.is_empty() { Err(Reason::Empty("the scan has no surface").of(path)) } else { Ok(()) }
+}
+
+fn written(path: PathBuf, holds: String) -> Result<Written, FormatError> {
+    match fs::metadata(&path) {
+        Ok(metadata) => Ok(Written { path, holds, bytes: metadata.len() }),
+        Err(e) => Err(Reason::from(e).of(&path)),
+    }
+}

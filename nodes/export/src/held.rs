@@ -1,0 +1,31 @@
+//! The cloud so far, put together from changes.
+
+use std::collections::BTreeMap;
+use wire::{Cloud, CloudPoint, Extent};
+
+/// The balls of one scan and revision, by their numbers.
+#[derive(Debug, Default)]
+pub(crate) struct HeldCloud {
+    of: Option<(u64, u32)>,
+    balls: BTreeMap<u32, CloudPoint>,
+}
+
+impl HeldCloud {
+    /// Takes a message; what belongs to an older scan or revision than is held comes too late and is passed over.
+    pub fn take(&mut self, cloud: &Cloud) {
+        let of = Some((cloud.header.scan, cloud.header.revision));
+        if of < self.of {
+            return;
+        }
+        if of > self.of || cloud.extent == Extent::Whole {
+            self.balls.clear();
+        }
+        self.of = of;
+        self.balls.extend(cloud.points.iter().map(|ball| (ball.id, *ball)));
+    }
+
+    /// The balls in the order of their numbers.
+    pub fn points(&self) -> Vec<CloudPoint> {
+        self.balls.values().copied().collect()
+    }
+}

@@ -1,0 +1,182 @@
+//! Recordings: whole, cut at any place, with any bit turned.
+
+use proptest::prelude::*;
+use record::{Config, Recorder};
+use replay::{Message, Recording, ReplayError, Source};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use tempfile::TempDir;
+use wire::codec::{self, DecodeError};
+use wire::{Header, Mesh, Phase, RunPhase};
+
+/// Two streams, the large one noisy, so that a small file has many chunks.
+fn messages() -> Vec<Message> {
+    let mut noise = 1_u32;
+    let mut bytes = |count: usize| -> Vec<u8> {
+        let next = |_| {
+            noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (noise >> 24) as u8
+        };
+        (0..count).map(next).collect()
+    };
+    (0..60)
+        .map(|i| {
+            let (key, schema) = if i % 3 == 0 { ("run/phase", "RunPhase@1:1") } else { ("a/b/c", "Thing@2:2") };
+            let (key, schema) = (key.to_owned(), schema.to_owned());
+            Message { key, schema, stamp_nanos: i * 20_000_000, bytes: bytes(300 + i as usize) }
+        })
+        .collect()
+}
+
+fn record(path: &Path, messages: &[Message], finish: bool) {
+    let config = Config { chunk_s: 0.1, ..Config::default() };
+    let metadata = [("limn_version".to_owned(), "test".to_owned())].into();
+    let mut recorder = Recorder::create(path, config, &metadata).unwrap();
+    for m in messages {
+        recorder.write(&m.key, &m.schema, m.stamp_nanos, &m.bytes).unwrap();
+    }
+    if finish {
+        recorder.finish().unwrap();
+    } else {
+        // As a kill would leave it: no footer, the last chunk never written.
+        std::mem::forget(recorder);
+    }
+}
+
+fn place() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.mcap");
+    (folder, path)
+}
+
+/// What can be read, and how many errors stood between.
+fn play(path: &Path) -> Result<(Vec<Message>, usize, bool), ReplayError> {
+    let recording = Recording::open(path)?;
+    let (good, bad): (Vec<_>, Vec<_>) = recording.messages()?.partition(Result::is_ok);
+    Ok((good.into_iter().flatten().collect(), bad.len(), recording.damage().is_some()))
+}
+
+static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let (_folder, path) = place();
+    record(&path, &messages(), true);
+    std::fs::read(&path).unwrap()
+});
+
+#[test]
+fn a_recording_gives_back_every_byte_in_order() {
+    let (_folder, path) = place();
+    record(&path, &messages(), true);
+    assert_eq!(play(&path).unwrap(), (messages(), 0, false));
+    let recording = Recording::open(&path).unwrap();
+    let streams: Vec<_> = recording.streams().into_iter().map(|s| (s.key, s.schema, s.messages)).collect();
+    let expected = [("a/b/c", "Thing@2:2", 40), ("run/phase", "RunPhase@1:1", 20)];
+    assert_eq!(streams, expected.map(|(key, schema, count)| (key.to_owned(), schema.to_owned(), count)));
+    assert_eq!(recording.metadata()["limn_version"], "test");
+}
+
+#[test]
+fn after_a_kill_all_but_the_last_chunk_is_there() {
+    let (_folder, path) = place();
+    record(&path, &messages(), false);
+    let recording = Recording::open(&path).unwrap();
+    let damage = recording.damage().unwrap().to_string();
+    assert!(damage.contains("it ends without a footer"), "{damage}");
+    let read: Vec<Message> = recording.messages().unwrap().collect::<Result<_, _>>().unwrap();
+    // A chunk spans 0.1 s: six messages.
+    assert!(read.len() >= 60 - 6, "{}", read.len());
+    assert_eq!(read, messages()[..read.len()]);
+    assert_eq!(recording.streams().iter().map(|s| s.messages).sum::<u64>(), read.len() as u64);
+}
+
+#[test]
+fn a_damaged_chunk_is_named_and_the_rest_follows() {
+    let (_folder, path) = place();
+    let mut bytes = WHOLE.clone();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    std::fs::write(&path, &bytes).unwrap();
+    let recording = Recording::open(&path).unwrap();
+    let errors: Vec<String> = recording.messages().unwrap().filter_map(|m| m.err()).map(|e| e.to_string()).collect();
+    assert_eq!(errors.len(), 1);
+    assert!(errors[0].contains("is damaged (6 messages lost): Chunk CRC failed"), "{}", errors[0]);
+    assert_eq!(play(&path).unwrap().0.len(), 54);
+}
+
+#[test]
+fn a_damaged_length_costs_no_more_than_its_chunk() {
+    let (_folder, path) = place();
+    let recorded = WHOLE.clone();
+    // The second chunk: opcode 6 behind the first one's message indexes.
+    let summary = mcap::Summary::read(&recorded).unwrap().unwrap();
+    let second = summary.chunk_indexes[1].chunk_start_offset as usize;
+    let mut bytes = recorded;
+    bytes[second + 6] ^= 0x40;
+    std::fs::write(&path, &bytes).unwrap();
+    let (read, _errors, damaged) = play(&path).unwrap();
+    assert!(damaged);
+    assert_eq!(read.len(), 60 - 6);
+}
+
+#[test]
+fn what_is_no_recording_is_told() {
+    let (_folder, path) = place();
+    assert!(Recording::open(&path).unwrap_err().to_string().contains("scan.mcap: No such file"));
+    std::fs::write(&path, b"").unwrap();
+    assert!(Recording::open(&path).unwrap_err().to_string().ends_with("it does not begin as an MCAP file does"));
+}
+
+#[test]
+fn another_version_is_named() {
+    let message = RunPhase { header: Header { phase: Phase::End, ..Header::default() }, discard: true };
+    let (key, schema, bytes) = ("run/phase".into(), codec::schema::<RunPhase>(), codec::encode(&message));
+    let recorded = Message { key, schema, stamp_nanos: 0, bytes };
+    assert_eq!(recorded.decode::<RunPhase>().unwrap(), message);
+    let older = Message { schema: "RunPhase@0:0".into(), ..recorded.clone() };
+    assert!(older.decode::<RunPhase>().unwrap_err().to_string().contains("got RunPhase@0:0"));
+    assert!(matches!(recorded.decode::<Mesh>(), Err(DecodeError::Schema { .. })));
+}
+
+#[test]
+fn a_source_is_a_recording_or_a_folder() {
+    let (folder, path) = place();
+    record(&path, &messages(), true);
+    assert_eq!(Source::open(&path).unwrap().messages().unwrap().count(), 60);
+    assert!(matches!(Source::open(folder.path()), Err(ReplayError::Folder(_))));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn cut_anywhere_gives_the_beginning(at in any::<prop::sample::Index>()) {
+        let (_folder, path) = place();
+        std::fs::write(&path, &WHOLE[..at.index(WHOLE.len())]).unwrap();
+        if let Ok((read, errors, damaged)) = play(&path) {
+            // Only the last bytes of the magic at the end can go without a loss.
+            prop_assert!(damaged || read.len() == 60);
+            prop_assert_eq!(errors, 0);
+            prop_assert_eq!(&read, &messages()[..read.len()]);
+        }
+    }
+
+    #[test]
+    fn turned_bits_never_give_wrong_messages(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..6)) {
+        let (_folder, path) = place();
+        let mut bytes = WHOLE.clone();
+        for (at, bit) in flips {
+            bytes[at.index(WHOLE.len())] ^= 1 << bit;
+        }
+        std::fs::write(&path, &bytes).unwrap();
+        if let Ok((read, _errors, _damaged)) = play(&path) {
+            let known = messages();
+            prop_assert!(read.iter().all(|m| known.iter().any(|k| k.bytes == m.bytes && k.stamp_nanos == m.stamp_nanos)));
+        }
+    }
+
+    #[test]
+    fn garbage_behind_the_magic(garbage in prop::collection::vec(any::<u8>(), 0..500)) {
+        let (_folder, path) = place();
+        std::fs::write(&path, [mcap::MAGIC, &garbage].concat()).unwrap();
+        drop(play(&path));
+    }
+}
