@@ -1,0 +1,154 @@
+//! What is told of a run: plain numbers, as they stand in report.json.
+
+use crate::ColourError;
+use geometry::Comparison;
+use serde::{Deserialize, Serialize};
+
+/// All that is told of a run. What is not known is empty or `None` and leaves no trace on the page.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Report {
+    /// The heading of the page.
+    pub title: String,
+    /// How the run was made.
+    pub run: Run,
+    /// The machine that computed it.
+    pub machine: Machine,
+    /// How much of everything there was.
+    pub counts: Counts,
+    /// Wall times, in the order of the run.
+    pub times: Vec<Time>,
+    /// The nodes, in the order of the data.
+    pub stages: Vec<Stage>,
+    /// The surface against the truth.
+    pub comparison: Option<Comparison>,
+    /// The colours against the truth's albedo.
+    pub colour: Option<ColourError>,
+    /// What failed, in sentences.
+    pub failures: Vec<String>,
+}
+
+/// How a run was made: enough to make it again.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Run {
+    /// The file or name of what was scanned.
+    pub object: String,
+    /// The scene file.
+    pub scene: String,
+    /// The rig file.
+    pub rig: String,
+    /// The seed of everything random.
+    pub seed: Option<u64>,
+    /// "real" or "fast".
+    pub pace: String,
+    /// How long the hand swept, in the time of the scan.
+    pub sweep_s: Option<f64>,
+    /// The command line.
+    pub command: String,
+    /// Version of the program.
+    pub version: String,
+    /// When, as a person writes it.
+    pub date: String,
+}
+
+/// The machine.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Machine {
+    /// Its processor.
+    pub processor: String,
+    /// How many of them the program could use.
+    pub cores: usize,
+    /// Operating system and architecture.
+    pub system: String,
+}
+
+/// How much of everything there was.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Counts {
+    /// Pictures.
+    pub frames: u64,
+    /// Tracker readings.
+    pub poses: u64,
+    /// Measured points.
+    pub points: u64,
+    /// Points of the thinned cloud.
+    pub cloud_points: u64,
+    /// Triangles of the surface.
+    pub triangles: u64,
+    /// Texture cells that were seen.
+    pub texture_cells: u64,
+    /// Area of the surface.
+    pub area_mm2: f64,
+}
+
+/// A part of the run and how long it took.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// What took it.
+    pub what: String,
+    /// On the wall's clock.
+    pub seconds: f64,
+}
+
+/// What one node did. Times are seconds unless the name says otherwise.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Stage {
+    /// kind/instance.
+    pub node: String,
+    /// Messages taken in, on all inputs.
+    pub received: u64,
+    /// Messages sent.
+    pub published: u64,
+    /// Messages sent a second while it worked.
+    pub rate_hz: Option<f64>,
+    /// Wall time spent on messages.
+    pub busy_s: f64,
+    /// Processor time.
+    pub cpu_s: f64,
+    /// Median of the time from a measurement's stamp to its result on the bus.
+    pub latency_p50_ms: Option<f64>,
+    /// 99th percentile of the same.
+    pub latency_p99_ms: Option<f64>,
+    /// Messages that never came.
+    pub lost: u64,
+    /// What it refused.
+    pub refused: Vec<Refused>,
+}
+
+/// How many items a node refused for one reason.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refused {
+    /// Why.
+    pub reason: String,
+    /// How many.
+    pub count: u64,
+}
+
+impl Report {
+    /// Messages lost on the whole way. Must be 0.
+    pub fn lost(&self) -> u64 {
+        self.stages.iter().map(|stage| stage.lost).sum()
+    }
+
+    /// True when nothing failed and nothing was lost.
+    pub fn is_good(&self) -> bool {
+        self.failures.is_empty() && self.lost() == 0
+    }
+}
+
+impl Machine {
+    /// The machine that this runs on; what the system does not tell is left empty.
+    pub fn here() -> Self {
+        let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = processors.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+        Self {
+            processor: model.map(|(_, name)| name.trim().to_owned()).unwrap_or_default(),
+            cores: std::thread::available_parallelism().map_or(0, std::num::NonZero::get),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        }
+    }
+}

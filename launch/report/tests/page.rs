@@ -1,0 +1,110 @@
+//! The page and the JSON, as a reader meets them.
+
+use formats::mesh::LoadedMesh;
+use geometry::{TriangleMesh, compare};
+use nalgebra::Point3;
+use report::{Exhibits, Machine, PageError, Refused, Report, Stage, four_views, render};
+
+/// A tetrahedron of 40 mm, moved by `shift_m` along x.
+fn tetrahedron(shift_m: f32) -> LoadedMesh {
+    let corners = [[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.0, 0.04, 0.0], [0.0, 0.0, 0.04]];
+    let mesh = TriangleMesh {
+        vertices: corners.map(|[x, y, z]| Point3::new(x + shift_m, y, z)).to_vec(),
+        colours: vec![[200, 30, 30], [30, 200, 30], [30, 30, 200], [220, 220, 220]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        ..TriangleMesh::default()
+    };
+    LoadedMesh { mesh, texture: None }
+}
+
+fn full() -> Report {
+    let comparison = compare(&tetrahedron(1e-4).mesh, &tetrahedron(0.0).mesh, None, 1).unwrap();
+    let refused = vec![Refused { reason: "depth < gate & \"odd\"".into(), count: 7 }];
+    Report {
+        title: "<script>alert(1)</script>".into(),
+        machine: Machine::here(),
+        stages: vec![Stage { node: "triangulate/head".into(), received: 1234, refused, ..Stage::default() }],
+        comparison: Some(comparison),
+        ..Report::default()
+    }
+}
+
+fn page(report: &Report, exhibits: &Exhibits<'_>) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.html");
+    report.write_html(&path, exhibits).unwrap();
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn the_page_stands_alone_and_takes_no_markup_from_names() {
+    let (model, truth) = (tetrahedron(1e-4), tetrahedron(0.0));
+    let html = page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth) });
+    for outside in ["http://", "https://", "<script", "<link", "@import", "url(h"] {
+        assert!(!html.contains(outside), "{outside}");
+    }
+    assert!(html.contains("&lt;script&gt;") && html.contains("depth &lt; gate &amp; &quot;odd&quot;"));
+    assert_eq!(html.matches("data:image/png;base64,").count(), 16);
+    assert!(html.contains("No message was lost.") && html.contains("1\u{202f}234"));
+    assert_eq!(html, page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth) }), "same input, same bytes");
+}
+
+#[test]
+fn a_loss_or_a_failure_is_told_at_the_head() {
+    let mut report = full();
+    report.stages[0].lost = 3;
+    report.failures = vec!["surface/all stopped: out of memory".into()];
+    assert!(!report.is_good());
+    let html = page(&report, &Exhibits::default());
+    let head = html.split("<h2>").next().unwrap();
+    assert!(head.contains("3 messages were lost.") && head.contains("surface/all stopped"));
+}
+
+#[test]
+fn an_empty_report_is_a_short_page() {
+    let html = page(&Report::default(), &Exhibits::default());
+    assert!(html.contains("<h1>A scan</h1>") && !html.contains("<h2>"), "{html}");
+    assert!(!html.contains("NaN"));
+}
+
+#[test]
+fn the_json_comes_back_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.json");
+    let report = full();
+    report.write_json(&path).unwrap();
+    let back: Report = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut expected = report;
+    expected.comparison.as_mut().unwrap().signed_mm.clear();
+    assert_eq!(back, expected);
+}
+
+#[test]
+fn a_surface_that_cannot_be_shown_is_named() {
+    let nothing = LoadedMesh { mesh: TriangleMesh::default(), texture: None };
+    let exhibits = Exhibits { model: Some(&nothing), truth: None };
+    let folder = tempfile::tempdir().unwrap();
+    let refused = Report::default().write_html(&folder.path().join("report.html"), &exhibits);
+    assert!(matches!(refused, Err(PageError::Surface(_))));
+}
+
+#[test]
+fn every_view_holds_the_whole_thing_and_fills_the_picture() {
+    let mesh = tetrahedron(0.0).mesh;
+    let views = four_views(&mesh, 200, 160);
+    assert_eq!(views.len(), 4);
+    let mut largest = 0.0f64;
+    for view in views {
+        for p in &mesh.vertices {
+            let pixel = view.camera.project(&(view.camera_from_world * p.map(f64::from))).unwrap();
+            assert!(view.camera.contains(&pixel));
+            largest = largest.max((pixel.x - 99.5).abs() / 100.0).max((pixel.y - 79.5).abs() / 80.0);
+        }
+        let picture = render(&mesh, &view, |_, _| [1.0, 0.0, 0.0]);
+        let drawn = picture.pixels().filter(|p| p.0[3] == 255).count();
+        assert!(drawn > 200 * 160 / 8, "{drawn} pixels");
+        assert!(picture.pixels().all(|p| p.0[1] == 0 && p.0[2] == 0), "only the colour that was given");
+        assert_eq!(picture.get_pixel(0, 0).0[3], 0, "nothing is transparent");
+    }
+    assert!(largest > 0.9 && largest < 0.95, "{largest}");
+}
