@@ -1,6 +1,7 @@
 //! Times of the jobs in the README's table: `cargo bench -p surface --no-default-features`.
 
-#[path = "../tests/animal/mod.rs"]
+#[path = "../tests/surface/animal.rs"]
+#[allow(dead_code, reason = "the tests need more of it")]
 mod animal;
 
 use animal::{on_animal, scanned};
@@ -22,9 +23,16 @@ fn live(c: &mut Criterion) {
     let (points, normals) = scanned(&on_animal(150_000, 1), 0.1e-3, 5.0, 2);
     let point = |((&position_m, &normal), id)| CloudPoint { position_m, normal, id, ..CloudPoint::default() };
     let points: Vec<CloudPoint> = points.iter().zip(&normals).zip(0..).map(point).collect();
-    let cloud = |points: Vec<CloudPoint>, extent| Cloud { header: Header::default(), extent, points: points.into(), refused: Vec::new() };
+    let cloud = |points: Vec<CloudPoint>, extent| Cloud {
+        header: Header::default(),
+        extent,
+        points: points.into(),
+        refused: Vec::new(),
+    };
     let mut nearest = points.clone();
-    let from_flank = |p: &CloudPoint| (p.position_m[0].powi(2) + (p.position_m[1] - 0.03).powi(2) + (p.position_m[2] - 0.06).powi(2)) as f64;
+    let from_flank = |p: &CloudPoint| {
+        (p.position_m[0].powi(2) + (p.position_m[1] - 0.03).powi(2) + (p.position_m[2] - 0.06).powi(2)) as f64
+    };
     nearest.sort_by(|a, b| from_flank(a).total_cmp(&from_flank(b)));
     nearest.truncate(5000);
     for point in &mut nearest {
@@ -35,10 +43,12 @@ fn live(c: &mut Criterion) {
     surfer.update(&cloud(points, Extent::Whole));
     surfer.live_mesh();
     let Ok(one_core) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
-    let run = |mut surfer: Surfer| one_core.install(|| {
-        surfer.update(&change);
-        surfer.live_mesh()
-    });
+    let run = |mut surfer: Surfer| {
+        one_core.install(|| {
+            surfer.update(&change);
+            surfer.live_mesh()
+        })
+    };
     c.benchmark_group("live").sample_size(10).bench_function("5000_points_one_core", |b| {
         b.iter_batched(|| surfer.clone(), run, BatchSize::PerIteration);
     });

@@ -1,7 +1,8 @@
 //! How near the surface comes to the truth, and how long it takes: `cargo run --release -p surface --no-default-features
 //! --example accuracy`. With a folder as argument it leaves the meshes there as PLY.
 
-#[path = "../tests/animal/mod.rs"]
+#[path = "../tests/surface/animal.rs"]
+#[allow(dead_code, reason = "the tests need more of it")]
 mod animal;
 
 use animal::{V, distance, on_animal, scanned};
@@ -11,7 +12,9 @@ use surface::{Config, surface_from_points};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1);
-    println!("cloud                    | s     | triangles | mesh to truth, mm: mean  95%    max    | truth seen within 0.5 mm");
+    println!(
+        "cloud                    | s     | triangles | mesh to truth, mm: mean  95%    max    | truth seen within 0.5 mm"
+    );
     for (name, count, noise_m) in [
         ("50000 points, 0.05 mm", 50_000, 0.05e-3),
         ("200000 points, 0.1 mm", 200_000, 0.1e-3),

@@ -41,7 +41,11 @@ impl Cap {
                 }
             }
         }
-        if cap.cut_ears() { refine(&mut cap) } else { cap.triangles.clear() }
+        if cap.cut_ears() {
+            refine(&mut cap)
+        } else {
+            cap.triangles.clear()
+        }
         cap
     }
 
@@ -85,7 +89,8 @@ impl Cap {
             let mut in_turn = (at..at + n).map(|k| k % n).filter(free);
             // A rim that crosses itself in its plane may have no ear; then its sharpest corner has to do.
             let ear = in_turn.clone().find(|&k| is_ear(&flat, corner(k), &left));
-            let sharpest = || in_turn.by_ref().min_by(|&j, &k| bend(&flat, corner(j)).total_cmp(&bend(&flat, corner(k))));
+            let sharpest =
+                || in_turn.by_ref().min_by(|&j, &k| bend(&flat, corner(j)).total_cmp(&bend(&flat, corner(k))));
             let Some(k) = ear.or_else(sharpest) else { return false };
             self.triangles.push(corner(k));
             left.remove(k);

@@ -16,14 +16,22 @@ pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| (0..=255).map(triangles
 
 /// The two corners of each edge, the lower first.
 pub const EDGES: [[u8; 2]; 12] = [
-    [0, 1], [2, 3], [4, 5], [6, 7], // along x
-    [0, 2], [1, 3], [4, 6], [5, 7], // along y
-    [0, 4], [1, 5], [2, 6], [3, 7], // along z
+    [0, 1],
+    [2, 3],
+    [4, 5],
+    [6, 7], // along x
+    [0, 2],
+    [1, 3],
+    [4, 6],
+    [5, 7], // along y
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7], // along z
 ];
 
 /// The corners of each face, counter-clockwise seen from outside the cell.
-const FACES: [[u8; 4]; 6] =
-    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+const FACES: [[u8; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 fn edge_between(a: u8, b: u8) -> u8 {
     EDGES.iter().position(|&[c, d]| (c, d) == (a.min(b), a.max(b))).map_or(u8::MAX, |e| e as u8)

@@ -2,16 +2,18 @@
 
 use crate::Config;
 use crate::sheet::Sheet;
-use crate::{holes, slivers, topology};
+use crate::{calm, flips, holes, slivers, topology};
 use geometry::METRES_PER_MM;
 
-/// Cuts bow-ties, drops islands, fills holes, collapses slivers. Afterwards no edge has more than two triangles, and
+/// Cuts bow-ties, drops islands, fills holes, collapses or flips slivers, smooths saws. Afterwards no edge has more than two triangles, and
 /// the triangles at a vertex form one fan.
 pub fn clean(sheet: &mut Sheet, config: &Config, cell_m: f32) {
     topology::split_bow_ties(sheet);
     topology::drop_islands(sheet, (config.drop_islands_mm * METRES_PER_MM) as f32);
     holes::fill(sheet, config.fill_holes_mm * METRES_PER_MM);
     slivers::collapse(sheet, cell_m);
+    flips::flip(sheet);
+    calm::calm(sheet);
     sheet.compact();
     sheet.complete_normals();
 }

@@ -1,10 +1,10 @@
 //! What a user may choose.
 
 use geometry::METRES_PER_MM;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The settings of the surface. Lengths are millimetres, since people write them.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
     /// Edge of a grid cell, about the edge of a triangle; 0 takes it from the cloud (three eighths of `radius_mm`).

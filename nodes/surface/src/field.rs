@@ -3,7 +3,8 @@
 //! Hoppe takes the one nearest tangent plane, and so has a step wherever the nearest one changes. Here the near quadrics are
 //! averaged with a kernel that falls with distance (implicit moving least squares, Kolluri 2005; partition of unity,
 //! Ohtake et al. 2003), but for those whose normals disagree with the nearest one's. Hoppe's own rule of where the distance is
-//! undefined is kept: where the foot of the point lies farther than rho + delta from any sample.
+//! undefined is kept: where the foot of the point lies farther than rho + delta from any sample. And it is undefined where the
+//! samples around the foot all lie to one side of it: past a rim a quadric only guesses.
 
 use crate::grid::{BlockKey, Grid};
 use crate::quadric::Quadric;
@@ -12,6 +13,8 @@ use nalgebra::Vector3;
 /// Hoppe's rho + delta, in reaches of the nearest quadric. Of random samples one voxel apart on average, a gap as wide
 /// as this comes once in ten million.
 const DEFINED_REACHES: f32 = 0.75;
+/// How far the centre of the samples may lie off the foot, in reaches: 0.24 on a straight rim, about 0.4 where the surface ends.
+const LOPSIDED_REACHES: f32 = 0.4;
 /// Below this cosine a quadric belongs to another sheet or face than the nearest one.
 const LEAST_AGREEMENT: f32 = 0.2;
 
@@ -31,6 +34,12 @@ fn falloff(squared: f32, quadric: &Quadric) -> f32 {
     u * u * u * u * quadric.weight
 }
 
+/// What makes a quadric the nearest: its distance, and thrice as much of it along the surface as across. At a crease, the face
+/// whose samples a point stands over wins against the one that it would have to be stretched to.
+fn remoteness(quadric: &Quadric, offset: &Vector3<f32>, squared: f32) -> f32 {
+    3.0 * squared - 2.0 * quadric.normal.dot(offset).powi(2)
+}
+
 fn agreement(a: &Quadric, b: &Quadric) -> f32 {
     let cosine = a.normal.dot(&b.normal);
     if cosine < LEAST_AGREEMENT { 0.0 } else { cosine * cosine }
@@ -38,17 +47,17 @@ fn agreement(a: &Quadric, b: &Quadric) -> f32 {
 
 /// The surface around one point; `None` where no quadric reaches.
 pub fn look(quadrics: &[Quadric], p: &Vector3<f32>) -> Option<Seen> {
-    let squared = |q: &Quadric| (p - q.centre).norm_squared();
-    let in_reach = quadrics.iter().filter(|q| squared(q) < q.reach_m * q.reach_m);
-    let nearest = in_reach.clone().min_by(|a, b| squared(a).total_cmp(&squared(b)))?;
+    let reaches = |(q, d): &(&Quadric, Vector3<f32>)| d.norm_squared() < q.reach_m * q.reach_m;
+    let in_reach: Vec<(&Quadric, Vector3<f32>)> = quadrics.iter().map(|q| (q, p - q.centre)).filter(reaches).collect();
+    let remote = |(q, d): &(&Quadric, Vector3<f32>)| remoteness(q, d, d.norm_squared());
+    let (nearest, _) = in_reach.iter().min_by(|a, b| remote(a).total_cmp(&remote(b)))?;
     let (mut weights, mut distance, mut sigma, mut gradient) = (0.0, 0.0, 0.0, Vector3::zeros());
-    for quadric in in_reach {
-        let offset = p - quadric.centre;
+    for (quadric, offset) in &in_reach {
         let weight = falloff(offset.norm_squared(), quadric) * agreement(nearest, quadric);
         weights += weight;
-        distance += weight * quadric.distance(&offset);
+        distance += weight * quadric.distance(offset);
         sigma += weight * quadric.sigma_m;
-        gradient += quadric.gradient(&offset) * weight;
+        gradient += quadric.gradient(offset) * weight;
     }
     let slope = gradient.norm() / weights;
     let normal = gradient.try_normalize(0.0)?;
@@ -87,34 +96,57 @@ fn each_corner(grid: &Grid, key: BlockKey, quadric: &Quadric, mut visit: impl Fn
     }
 }
 
+/// Weighted sums at one corner.
+#[derive(Clone, Copy)]
+struct Sum {
+    remoteness: f32,
+    nearest: u32,
+    weight: f32,
+    distance: f32,
+    offset: Vector3<f32>,
+}
+
+const NOTHING: Sum =
+    Sum { remoteness: f32::INFINITY, nearest: 0, weight: 0.0, distance: 0.0, offset: Vector3::new(0.0, 0.0, 0.0) };
+
+impl Sum {
+    /// The distance, or NaN where it is undefined.
+    fn distance(&self, quadrics: &[Quadric], corner: &Vector3<f32>) -> f32 {
+        if self.weight <= 0.0 {
+            return f32::NAN;
+        }
+        let nearest = &quadrics[self.nearest as usize];
+        let along = |offset: &Vector3<f32>| (offset - nearest.normal * nearest.normal.dot(offset)).norm();
+        let far = along(&(corner - nearest.centre)) > DEFINED_REACHES * nearest.reach_m;
+        let lopsided = along(&(self.offset / self.weight)) > LOPSIDED_REACHES * nearest.reach_m;
+        if far || lopsided { f32::NAN } else { self.distance / self.weight }
+    }
+}
+
 /// The distance at every corner of a block; `quadrics` are all that reach it, in the order of their blocks. Two blocks
 /// that share a corner sum the same quadrics in the same order, so they agree on it to the last bit.
 pub fn corners(grid: &Grid, key: BlockKey, quadrics: &[Quadric]) -> Corners {
     let along = grid.cells + 1;
-    let count = along * along * along;
-    let mut nearest = vec![(f32::INFINITY, 0u32); count];
-    for (index, quadric) in quadrics.iter().enumerate() {
-        each_corner(grid, key, quadric, |corner, _, squared| {
-            if squared < nearest[corner].0 {
-                nearest[corner] = (squared, index as u32);
+    let mut sums = vec![NOTHING; along * along * along];
+    for (index, quadric) in (0..).zip(quadrics) {
+        each_corner(grid, key, quadric, |corner, offset, squared| {
+            let remoteness = remoteness(quadric, &offset, squared);
+            if remoteness < sums[corner].remoteness {
+                sums[corner].remoteness = remoteness;
+                sums[corner].nearest = index;
             }
         });
     }
-    let mut sums = vec![(0f32, 0f32); count];
     for quadric in quadrics {
         each_corner(grid, key, quadric, |corner, offset, squared| {
-            let weight = falloff(squared, quadric) * agreement(&quadrics[nearest[corner].1 as usize], quadric);
-            sums[corner].0 += weight;
-            sums[corner].1 += weight * quadric.distance(&offset);
+            let sum = &mut sums[corner];
+            let weight = falloff(squared, quadric) * agreement(&quadrics[sum.nearest as usize], quadric);
+            sum.weight += weight;
+            sum.distance += weight * quadric.distance(&offset);
+            sum.offset += offset * weight;
         });
     }
-    let distance = |(&(weight, sum), &(squared, index)): (&(f32, f32), &(f32, u32))| {
-        if weight <= 0.0 {
-            return f32::NAN;
-        }
-        let distance = sum / weight;
-        let defined_m = DEFINED_REACHES * quadrics[index as usize].reach_m;
-        if squared - distance * distance > defined_m * defined_m { f32::NAN } else { distance }
-    };
-    Corners { along, distances_m: sums.iter().zip(&nearest).map(distance).collect() }
+    let place = |n: usize| [n / (along * along), n / along % along, n % along];
+    let distance = |(n, sum): (usize, &Sum)| sum.distance(quadrics, &grid.corner(key, place(n)));
+    Corners { along, distances_m: sums.iter().enumerate().map(distance).collect() }
 }

@@ -88,7 +88,8 @@ impl Model {
         }
         let Self { grid, typical_variance, members, .. } = self;
         let changed = update(&mut self.surfels, &changed, |key| {
-            let mut samples: Vec<&Sample> = members.get(&key).into_iter().flatten().map(|&m| &store[m as usize]).collect();
+            let mut samples: Vec<&Sample> =
+                members.get(&key).into_iter().flatten().map(|&m| &store[m as usize]).collect();
             samples.sort_by_key(|sample| sample.id);
             surfels(grid, key, &samples, *typical_variance)
         });

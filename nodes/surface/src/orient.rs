@@ -56,7 +56,12 @@ impl Graph {
             starts.push(neighbours.len() as u32);
         }
         let all = || planes.values().flatten();
-        Self { positions: all().map(|p| p.position).collect(), normals: all().map(|p| p.normal).collect(), starts, neighbours }
+        Self {
+            positions: all().map(|p| p.position).collect(),
+            normals: all().map(|p| p.normal).collect(),
+            starts,
+            neighbours,
+        }
     }
 
     fn cost(&self, a: u32, b: u32) -> u32 {

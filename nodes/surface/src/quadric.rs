@@ -118,10 +118,9 @@ fn fit(plane: &Plane, normal: &Vector3<f32>, near: &[Plane], rows: &mut Vec<Row>
     let c = solution.map(|x| x as f32);
     let [t, b] = frame;
     let reach_m = plane.reach_m;
-    let matrix = (t * t.transpose() * c[3]
-        + (t * b.transpose() + b * t.transpose()) * (0.5 * c[4])
-        + b * b.transpose() * c[5])
-        / reach_m;
+    let matrix =
+        (t * t.transpose() * c[3] + (t * b.transpose() + b * t.transpose()) * (0.5 * c[4]) + b * b.transpose() * c[5])
+            / reach_m;
     Some(Quadric {
         centre: plane.position + normal * (c[0] * reach_m),
         normal: (normal - t * c[1] - b * c[2]).normalize(),
@@ -133,18 +132,18 @@ fn fit(plane: &Plane, normal: &Vector3<f32>, near: &[Plane], rows: &mut Vec<Row>
 }
 
 fn solve(rows: &[Row]) -> Option<(Vector6<f64>, Vector6<f64>)> {
-    let mut upper = [[0f32; 6]; 6];
+    let mut gram = [[0f32; 6]; 6];
     let mut right = [0f32; 6];
     for row in rows {
         for i in 0..6 {
             let weighted = row.weight * row.basis[i];
             right[i] += weighted * row.height;
-            for j in 0..6 {
-                upper[i][j] += weighted * row.basis[j];
+            for (sum, basis) in gram[i].iter_mut().zip(&row.basis) {
+                *sum += weighted * basis;
             }
         }
     }
-    let mut normal = Matrix6::from_fn(|i, j| f64::from(upper[i][j]));
+    let mut normal = Matrix6::from_fn(|i, j| f64::from(gram[i][j]));
     let ridge = RIDGE * normal[(0, 0)];
     for k in 1..6 {
         normal[(k, k)] += ridge;

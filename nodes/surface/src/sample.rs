@@ -35,6 +35,8 @@ pub enum Refused {
 const FARTHEST_M: f32 = 1000.0;
 /// Averaged directions shorter than this point nowhere.
 const SHORTEST: f32 = 1e-3;
+/// A sigma beyond these is taken as the nearer one: its square would vanish or overflow.
+const SIGMAS_M: [f32; 2] = [1e-7, 1.0];
 
 impl Sample {
     /// Checks a point. A normal of zero length means that the side is not known; so does a sigma of zero or nonsense.
@@ -52,6 +54,7 @@ impl Sample {
         }
         let seen = normal.try_normalize(SHORTEST).unwrap_or_else(Vector3::zeros);
         let known = sigma_m.is_finite() && sigma_m > 0.0;
-        Ok(Self { id, position, seen, sigma_m: if known { sigma_m } else { 0.0 } })
+        let sigma_m = if known { sigma_m.clamp(SIGMAS_M[0], SIGMAS_M[1]) } else { 0.0 };
+        Ok(Self { id, position, seen, sigma_m })
     }
 }

@@ -62,7 +62,7 @@ impl Scale {
     /// Looks at the cloud; `None` when it has no two places. `samples` in the order of their ids.
     pub fn of(samples: &[Sample]) -> Option<Self> {
         let one_in = samples.len().div_ceil(COUNTED).max(1);
-        let counted: Vec<&Sample> = samples.iter().filter(|s| shuffled(s.id) % one_in as u64 == 0).collect();
+        let counted: Vec<&Sample> = samples.iter().filter(|s| shuffled(s.id).is_multiple_of(one_in as u64)).collect();
         let share = counted.len() as f64 / samples.len() as f64;
         let spacing_m = spacing(&counted)? * share.sqrt();
         let probes: Vec<&Sample> = counted.iter().copied().step_by(counted.len().div_ceil(PROBES).max(1)).collect();

@@ -55,6 +55,12 @@ impl Sheet {
         (b - a).cross(&(c - a))
     }
 
+    /// Which way the surface faces at a triangle, by the normals of its vertices; by its own where those are not known.
+    pub fn outwards(&self, triangle: [u32; 3]) -> Vector3<f32> {
+        let known: Vector3<f32> = triangle.iter().map(|&v| self.normals[v as usize]).sum();
+        if known == Vector3::zeros() { self.area_normal(triangle) } else { known }
+    }
+
     /// Drops vertices that no triangle names; the others keep their order.
     pub fn compact(&mut self) {
         let mut used = vec![false; self.positions.len()];

@@ -9,8 +9,7 @@ pub fn errors_m(mesh: &Mesh, distance: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
     let at = |v: u32| mesh.vertices_m[v as usize].map(f64::from);
     let middle = |&[a, b, c]: &[u32; 3]| [0, 1, 2].map(|k| (at(a)[k] + at(b)[k] + at(c)[k]) / 3.0);
     let vertices = (0..mesh.vertices_m.len() as u32).map(at);
-    let mut errors: Vec<f64> =
-        vertices.chain(mesh.triangles.iter().map(middle)).map(|p| distance(p).abs()).collect();
+    let mut errors: Vec<f64> = vertices.chain(mesh.triangles.iter().map(middle)).map(|p| distance(p).abs()).collect();
     errors.sort_by(f64::total_cmp);
     errors
 }

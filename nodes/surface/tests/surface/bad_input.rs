@@ -1,12 +1,7 @@
 //! Clouds that have no surface, and numbers that are none.
 
-#[path = "animal/mod.rs"]
-#[allow(dead_code)]
-mod animal;
-mod check;
-
-use animal::Random;
-use check::{as_it_is, assert_clean};
+use crate::animal::Random;
+use crate::check::{as_it_is, assert_clean};
 use proptest::prelude::*;
 use surface::{Config, Surfer, surface_from_points};
 use wire::{Cloud, CloudPoint, Extent, Header};
@@ -35,7 +30,8 @@ fn points_on_a_line_have_no_surface() {
 #[test]
 fn duplicates_change_nothing_but_the_weight() {
     let mut random = Random(3);
-    let once: Vec<[f32; 3]> = (0..5000).map(|_| [0.05 * random.even() as f32, 0.05 * random.even() as f32, 0.0]).collect();
+    let once: Vec<[f32; 3]> =
+        (0..5000).map(|_| [0.05 * random.even() as f32, 0.05 * random.even() as f32, 0.0]).collect();
     let twice: Vec<[f32; 3]> = once.iter().flat_map(|p| [*p, *p]).collect();
     let mesh = surface_from_points(&twice, None, Config::default()).unwrap().0;
     assert_clean(&mesh);
@@ -45,7 +41,8 @@ fn duplicates_change_nothing_but_the_weight() {
 #[test]
 fn what_is_no_point_is_refused_and_counted() {
     let mut random = Random(3);
-    let mut points: Vec<[f32; 3]> = (0..5000).map(|_| [0.05 * random.even() as f32, 0.05 * random.even() as f32, 0.0]).collect();
+    let mut points: Vec<[f32; 3]> =
+        (0..5000).map(|_| [0.05 * random.even() as f32, 0.05 * random.even() as f32, 0.0]).collect();
     let mut normals = vec![[0.0, 0.0, 1.0]; points.len()];
     let clean = surface_from_points(&points, Some(&normals), Config::default()).unwrap();
     assert!(clean.1.is_empty());
@@ -54,7 +51,10 @@ fn what_is_no_point_is_refused_and_counted() {
     let (mesh, refused) = surface_from_points(&points, Some(&normals), Config::default()).unwrap();
     assert_eq!(mesh, clean.0, "and the rest is as if they had never come");
     let counts: Vec<(&str, u64)> = refused.iter().map(|r| (r.reason.as_str(), r.count)).collect();
-    assert_eq!(counts, [("position is not finite", 2), ("more than 1000 m from the origin", 1), ("normal is not finite", 1)]);
+    assert_eq!(
+        counts,
+        [("position is not finite", 2), ("more than 1000 m from the origin", 1), ("normal is not finite", 1)]
+    );
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn number() -> impl Strategy<Value = f32> {
 }
 
 fn point() -> impl Strategy<Value = CloudPoint> {
-    ([number(), number(), number()], [number(), number(), number()], any::<f32>(), prop_oneof![0..50u32, any::<u32>()]).prop_map(
-        |(position_m, normal, sigma_m, id)| CloudPoint {
+    ([number(), number(), number()], [number(), number(), number()], any::<f32>(), prop_oneof![0..50u32, any::<u32>()])
+        .prop_map(|(position_m, normal, sigma_m, id)| CloudPoint {
             position_m,
             normal,
             sigma_m,
@@ -85,8 +85,7 @@ fn point() -> impl Strategy<Value = CloudPoint> {
             count: 1,
             spread_m: 0.0,
             colour: [0; 4],
-        },
-    )
+        })
 }
 
 proptest! {

@@ -1,11 +1,7 @@
 //! Surfaces whose truth is a formula.
 
-#[path = "animal/mod.rs"]
-mod animal;
-mod check;
-
-use animal::{Random, V, distance, on_animal, scanned};
-use check::{as_it_is, assert_clean, errors_m, quantile};
+use crate::animal::{Random, V, animal, distance, on_animal, scanned};
+use crate::check::{as_it_is, assert_clean, errors_m, quantile};
 use surface::{Config, surface_from_points};
 use wire::Mesh;
 
@@ -36,8 +32,8 @@ fn a_plane_is_flat_and_ends_where_its_samples_end() {
     let mesh = surface(&points, Config::default());
     assert!(assert_clean(&mesh) > 100, "a plane has a rim");
     let errors = errors_m(&mesh, |p| p[2]);
-    assert!(quantile(&errors, 0.95) < 0.05e-3, "{}", quantile(&errors, 0.95));
-    let reach_m = 3e-3;
+    assert!(quantile(&errors, 0.95) < 0.085e-3, "{}", quantile(&errors, 0.95));
+    let reach_m = 1e-3;
     let inside = |p: &[f32; 3]| p[0] > -reach_m && p[0] < 0.1 + reach_m && p[1] > -reach_m && p[1] < 0.06 + reach_m;
     assert!(mesh.vertices_m.iter().all(inside), "nothing is invented beyond the reach of the samples");
     assert!(mesh.normals.iter().all(|n| n[2] > 0.8));
@@ -45,13 +41,13 @@ fn a_plane_is_flat_and_ends_where_its_samples_end() {
 
 #[test]
 fn a_sphere_is_closed_and_round() {
-    let mesh = surface(&scan(60_000, 0.1e-3, sphere), Config::default());
+    let mesh = surface(&scan(30_000, 0.1e-3, sphere), Config::default());
     assert_eq!(assert_clean(&mesh), 0, "closed");
     let errors = errors_m(&mesh, off_sphere);
-    assert!(quantile(&errors, 0.95) < 0.04e-3, "{}", quantile(&errors, 0.95));
+    assert!(quantile(&errors, 0.95) < 0.065e-3, "{}", quantile(&errors, 0.95));
     // Curvature is corrected for: the mean must not be drawn inside.
     let signed: f64 = mesh.vertices_m.iter().map(|p| off_sphere(p.map(f64::from))).sum::<f64>();
-    assert!((signed / mesh.vertices_m.len() as f64).abs() < 0.006e-3);
+    assert!((signed / mesh.vertices_m.len() as f64).abs() < 0.008e-3);
     let outwards = |(p, n): (&[f32; 3], &[f32; 3])| {
         (V::from(p.map(f64::from)) - V::new(0.1, 0.2, 0.3)).normalize().dot(&V::from(n.map(f64::from))) > 0.98
     };
@@ -60,7 +56,7 @@ fn a_sphere_is_closed_and_round() {
 
 #[test]
 fn sigma_tells_the_error() {
-    let mesh = surface(&scan(60_000, 0.1e-3, sphere), Config::default());
+    let mesh = surface(&scan(30_000, 0.1e-3, sphere), Config::default());
     let squares: f64 = mesh.vertices_m.iter().map(|p| off_sphere(p.map(f64::from)).powi(2)).sum();
     let rms = (squares / mesh.vertices_m.len() as f64).sqrt();
     let stated = mesh.sigma_m.iter().map(|&s| f64::from(s)).sum::<f64>() / mesh.sigma_m.len() as f64;
@@ -120,7 +116,8 @@ fn sheets_seen_from_one_side_have_no_phantom_between_them() {
     let mesh = surface(&points, as_it_is());
     assert_clean(&mesh);
     let worst = errors_m(&mesh, |p| p[2].abs().min((p[2] - 4e-3).abs()));
-    assert!(quantile(&worst, 1.0) < 1e-3, "{}", quantile(&worst, 1.0));
+    // The most is at the rims, where the last samples stand to one side.
+    assert!(quantile(&worst, 1.0) < 0.7e-3, "{}", quantile(&worst, 1.0));
 }
 
 #[test]
@@ -129,20 +126,24 @@ fn a_cloud_without_normals_is_turned_outwards() {
     let (mesh, _) = surface_from_points(&points, None, Config::default()).unwrap();
     assert_eq!(assert_clean(&mesh), 0);
     assert!(quantile(&errors_m(&mesh, off_sphere), 0.95) < 0.05e-3);
-    let volume: f64 = mesh.triangles.iter().map(|t| {
-        let [a, b, c] = t.map(|v| V::from(mesh.vertices_m[v as usize].map(f64::from)));
-        a.dot(&b.cross(&c)) / 6.0
-    }).sum();
+    let volume: f64 = mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|v| V::from(mesh.vertices_m[v as usize].map(f64::from)));
+            a.dot(&b.cross(&c)) / 6.0
+        })
+        .sum();
     let true_volume = 4.0 / 3.0 * std::f64::consts::PI * 0.02f64.powi(3);
     assert!((volume / true_volume - 1.0).abs() < 0.01, "{}", volume / true_volume);
 }
 
 #[test]
 fn an_animal_comes_out_true() {
-    let (points, normals) = scanned(&on_animal(150_000, 3), 0.1e-3, 5.0, 4);
+    let (points, normals) = scanned(&on_animal(80_000, 3), 0.1e-3, 5.0, 4);
     let mesh = surface(&(points, normals), Config::default());
     assert_clean(&mesh);
-    let errors = errors_m(&mesh, |p| distance(animal::animal, &V::from(p)));
+    let errors = errors_m(&mesh, |p| distance(animal, &V::from(p)));
     assert!(quantile(&errors, 0.95) < 0.09e-3, "{}", quantile(&errors, 0.95));
     assert!(quantile(&errors, 0.999) < 1e-3, "{}", quantile(&errors, 0.999));
 }

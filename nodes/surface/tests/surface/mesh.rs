@@ -1,11 +1,7 @@
 //! What the mesh promises whatever the shape: holes, islands, determinism, live updates.
 
-#[path = "animal/mod.rs"]
-mod animal;
-mod check;
-
-use animal::{Random, V, scanned};
-use check::{as_it_is, assert_clean, cloud};
+use crate::animal::{Random, V, scanned};
+use crate::check::{as_it_is, assert_clean, cloud};
 use surface::{Config, Surfer, surface_from_points};
 use wire::{Cloud, Extent, Header, Mesh, Phase};
 
@@ -102,7 +98,8 @@ fn batches_do_not_show() {
     for (k, batch) in whole.points.chunks(1537).rev().enumerate() {
         let mut points = batch.to_vec();
         // A ball that grows: first somewhere else, then where it belongs.
-        let moved: Vec<_> = points.iter().map(|p| wire::CloudPoint { position_m: p.position_m.map(|x| x * 1.05), ..*p }).collect();
+        let moved: Vec<_> =
+            points.iter().map(|p| wire::CloudPoint { position_m: p.position_m.map(|x| x * 1.05), ..*p }).collect();
         let changes = |points: Vec<_>| Cloud { points: points.into(), extent: Extent::Changes, ..whole.clone() };
         backwards.update(&changes(moved));
         points.reverse();
@@ -151,7 +148,10 @@ fn a_new_revision_starts_afresh_and_an_old_one_is_refused() {
     assert_eq!(surfer.samples(), southern.0.len());
     surfer.update(&of(&(points, normals), 1, 0));
     assert_eq!(surfer.samples(), southern.0.len());
-    assert_eq!((surfer.refused()[0].reason.as_str(), surfer.refused()[0].count), ("of an older scan or revision", 10_000));
+    assert_eq!(
+        (surfer.refused()[0].reason.as_str(), surfer.refused()[0].count),
+        ("of an older scan or revision", 10_000)
+    );
     let mesh = surfer.final_mesh();
     assert_eq!((mesh.header.scan, mesh.header.revision), (1, 1));
     assert!(mesh.vertices_m.iter().all(|p| p[2] < 3e-3));
