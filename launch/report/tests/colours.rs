@@ -21,7 +21,7 @@ fn square() -> TriangleMesh {
 }
 
 fn board(column: u32, row: u32) -> [u8; 3] {
-    if (column / 5 + row / 5) % 2 == 0 { [200, 60, 30] } else { [90, 160, 220] }
+    if (column / 5 + row / 5).is_multiple_of(2) { [200, 60, 30] } else { [90, 160, 220] }
 }
 
 /// The square with a cell of 1 mm for each pixel of the board, as `paint` sees it.
@@ -79,7 +79,7 @@ fn a_gain_on_the_light_of_a_channel_is_found_and_taken_out() {
 #[test]
 fn an_error_of_known_size_is_measured() {
     // Half of the cells 10 too bright, half 10 too dark.
-    let cell = |u: u32, v: u32| opaque(board(u, v).map(|c| if (u + v) % 2 == 0 { c + 10 } else { c - 10 }));
+    let cell = |u: u32, v: u32| opaque(board(u, v).map(|c| if (u + v).is_multiple_of(2) { c + 10 } else { c - 10 }));
     let error = colour_error(&model(cell), &truth()).unwrap();
     assert!((error.rms_255 - 10.0).abs() < 0.7, "{error:?}");
 }

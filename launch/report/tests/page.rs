@@ -18,7 +18,7 @@ fn tetrahedron(shift_m: f32) -> LoadedMesh {
 }
 
 fn full() -> Report {
-    let comparison = compare(&tetrahedron(1e-4).mesh, &tetrahedron(0.0).mesh, None, 1).unwrap();
+    let comparison = compare(&tetrahedron(1e-4).mesh, &tetrahedron(0.0).mesh, None, 1).expect("two surfaces");
     let refused = vec![Refused { reason: "depth < gate & \"odd\"".into(), count: 7 }];
     Report {
         title: "<script>alert(1)</script>".into(),
@@ -30,10 +30,10 @@ fn full() -> Report {
 }
 
 fn page(report: &Report, exhibits: &Exhibits<'_>) -> String {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("report.html");
-    report.write_html(&path, exhibits).unwrap();
-    std::fs::read_to_string(path).unwrap()
+    report.write_html(&path, exhibits).expect("a page");
+    std::fs::read_to_string(path).expect("what was written")
 }
 
 #[test]

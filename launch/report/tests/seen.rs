@@ -29,7 +29,7 @@ fn looking(eye: [f64; 3], at: [f64; 3]) -> Isometry3<f64> {
 }
 
 fn share(scene: &TriangleMesh, samples: &[SurfaceSample], way: &[Isometry3<f64>]) -> f64 {
-    let mask = seen_mask(samples, &MeshIndex::new(scene).unwrap(), way, &CAMERA, &Gate::default());
+    let mask = seen_mask(samples, &MeshIndex::new(scene).expect("a surface"), way, &CAMERA, &Gate::default());
     assert_eq!(mask.len(), samples.len());
     mask.iter().filter(|seen| **seen).count() as f64 / mask.len() as f64
 }

@@ -17,7 +17,7 @@
 //! a picture share is averaged too well where few pictures saw the ball. Scans bring no colour, so there is none.
 //!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
-//! 0.8 mm). Memory: about 3 kB a ball on a surface, and 24 bytes for each point that a later ball might still take over
+//! 0.8 mm). Memory: about 1 kB a ball on a surface, and 24 bytes for each point that a later ball might still take over
 //! (farther than D/2 from its centre: about half of them). **Speed**: one look into a hash a point.
 //!
 //! ```

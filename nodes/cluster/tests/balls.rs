@@ -71,7 +71,7 @@ fn on_a_ball_the_averages_are_closer_and_the_normals_point_out() {
 fn a_thin_sheet_keeps_both_faces() {
     let (width_m, thickness_m) = (0.01, 0.6e-3);
     let face = |i: usize| {
-        let up = i % 2 == 0;
+        let up = i.is_multiple_of(2);
         let z = if up { thickness_m } else { 0.0 };
         let to_sensor = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
         ScanPoint { to_sensor, ..point([width_m * noise(i, 0), width_m * noise(i, 1), z]) }

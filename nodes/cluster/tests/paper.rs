@@ -50,7 +50,8 @@ fn paper(points: &[[f32; 3]]) -> (Vec<PaperBall>, u64) {
     let mut balls: Vec<Vec<[f32; 3]>> = vec![vec![]; ball_center_list.len()];
     for p in points {
         let distance = |i: &usize| squared(p, &ball_center_list[*i]);
-        let closest = (0..balls.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+        let closest =
+            (0..balls.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("every point has a centre");
         balls[closest].push(*p);
     }
     // delete outlier balls
@@ -62,7 +63,7 @@ fn paper(points: &[[f32; 3]]) -> (Vec<PaperBall>, u64) {
 }
 
 fn clustered(points: &[[f32; 3]], batch: usize) -> Cloud {
-    let mut clusterer = BallClusterer::new(config()).unwrap();
+    let mut clusterer = BallClusterer::new(config()).expect("a good configuration");
     for some in points.chunks(batch) {
         clusterer.insert(&scan(some));
     }
@@ -108,7 +109,7 @@ proptest! {
 
     #[test]
     fn batches_and_questions_in_between_leave_no_trace(points in points(), batch in 1usize..50, ask in 1usize..9) {
-        let mut asked = BallClusterer::new(config()).unwrap();
+        let mut asked = BallClusterer::new(config()).expect("a good configuration");
         for (i, some) in points.chunks(batch).enumerate() {
             asked.insert(&scan(some));
             if i % ask == 0 {
@@ -120,7 +121,7 @@ proptest! {
 
     #[test]
     fn the_changes_add_up_to_the_whole(points in points(), batch in 1usize..80) {
-        let mut clusterer = BallClusterer::new(config()).unwrap();
+        let mut clusterer = BallClusterer::new(config()).expect("a good configuration");
         let mut kept = std::collections::BTreeMap::new();
         for some in points.chunks(batch) {
             clusterer.insert(&scan(some));
