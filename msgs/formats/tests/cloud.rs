@@ -1,5 +1,7 @@
 //! Points there and back, and as others write them.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::cloud;
 use proptest::prelude::*;
 use wire::CloudPoint;

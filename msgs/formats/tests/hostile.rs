@@ -1,5 +1,7 @@
 //! Bytes from anywhere: every parser answers, none panics, none allocates what is not there.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::{cloud, image_file, mesh};
 use geometry::TriangleMesh;
 use image::{Rgb, RgbImage};

@@ -1,5 +1,7 @@
 //! Surfaces as others write them.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::mesh::{self, LoadedMesh};
 use formats::{FormatError, Reason};
 use std::path::PathBuf;

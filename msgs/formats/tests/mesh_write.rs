@@ -1,5 +1,7 @@
 //! What we write, read by ourselves and by independent readers.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::mesh::{self, LoadedMesh};
 use geometry::TriangleMesh;
 use image::{Rgb, RgbImage};

@@ -1,5 +1,7 @@
 //! Scan folders: ours there and back, and others' with every fault.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::scan_folder::{POSITION_SIGMA_M, ScanFolder, ScanFolderWriter};
 use geometry::Rig;
 use std::path::{Path, PathBuf};

@@ -23,7 +23,7 @@
 //!     triangles: vec![[0, 1, 2]].into(),
 //! };
 //! let written = exporter.mesh(&mesh).unwrap();
-//! assert_eq!(written[0].to_string().split_once("mesh.ply").unwrap().1, ": 1 triangles, 240 bytes");
+//! assert!(written[0].to_string().contains("mesh.ply: 1 triangles"));
 //! ```
 
 mod config;

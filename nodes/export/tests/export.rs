@@ -1,5 +1,7 @@
 //! From the last message of each stream to files that can be read again.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use export::{Config, Exporter};
 use formats::{cloud, mesh};
 use std::fs;

@@ -1,5 +1,7 @@
 //! What an independent reader (the crate mcap, by its index) finds in our files.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use record::{Config, METADATA, RecordError, Recorder};
 use std::collections::BTreeMap;
 use wire::{Header, Phase, RunPhase, codec};

@@ -9,14 +9,14 @@ pub enum Source {
     /// An MCAP file.
     Recording(Recording),
     /// A scan folder.
-    Folder(FolderScan),
+    Folder(Box<FolderScan>),
 }
 
 impl Source {
     /// Opens a folder as a scan folder, anything else as a recording.
     pub fn open(path: &Path) -> Result<Self, ReplayError> {
         if path.is_dir() {
-            Ok(Self::Folder(FolderScan::open(path, Names::default())?))
+            Ok(Self::Folder(Box::new(FolderScan::open(path, Names::default())?)))
         } else {
             Ok(Self::Recording(Recording::open(path)?))
         }

@@ -1,5 +1,7 @@
 //! Scan folders as messages.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use formats::scan_folder::{ScanFolder, ScanFolderWriter};
 use geometry::Rig;
 use replay::{FolderScan, Message, Names, ReplayError, Source};

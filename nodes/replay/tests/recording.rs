@@ -1,5 +1,7 @@
 //! Recordings: whole, cut at any place, with any bit turned.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use proptest::prelude::*;
 use record::{Config, Recorder};
 use replay::{Message, Recording, ReplayError, Source};

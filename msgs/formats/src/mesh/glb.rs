@@ -6,7 +6,7 @@ use super::materials::{Part, join};
 use super::{LoadedMesh, srgb};
 use crate::Reason;
 use crate::bytes::Cursor;
-use ::gltf::json::{Index, Root};
+use ::gltf::json::{Image, Index, Root};
 use ::gltf::{Document, Node, Primitive, Semantic};
 use geometry::TriangleMesh;
 use image::RgbImage;
@@ -61,13 +61,21 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<Vec<u8>>), Reason> {
     Ok((json, binary.map(<[u8]>::to_vec)))
 }
 
-/// The crate's validation checks every index but the one that it uses itself to look at the positions' bounds.
+/// The crate's validation leaves out two things that it relies on itself: the indices of attributes, which it uses to look at
+/// the positions' bounds, and that a picture has a source.
 fn document(json: &[u8]) -> Result<Document, Reason> {
     let invalid = |e: &dyn std::fmt::Display| Reason::syntax(format!("no valid glTF: {e}"));
     let root = Root::from_slice(json).map_err(|e| invalid(&e))?;
     let attributes = root.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|p| p.attributes.values());
     if let Some(bad) = attributes.map(Index::value).find(|&accessor| accessor >= root.accessors.len()) {
         return Err(invalid(&format!("accessor {bad} is named, but there are {}", root.accessors.len())));
+    }
+    let sourced = |image: &Image| match image.buffer_view {
+        Some(_) => image.mime_type.is_some(),
+        None => image.uri.is_some(),
+    };
+    if !root.images.iter().all(sourced) {
+        return Err(invalid(&"a picture has no source, or no media type"));
     }
     Document::from_json(root).map_err(|e| invalid(&e))
 }

@@ -12,13 +12,7 @@ use std::path::Path;
 
 /// A material's picture (map_Kd) stands for its colour; without one, Kd is taken as it is, a display colour.
 pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<LoadedMesh, Reason> {
-    let options = tobj::LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..tobj::LoadOptions::default()
-    };
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     // tobj reports its own word for whatever happens in here, so the reason is kept aside.
     let broken_library = RefCell::new(None);
     let load_materials = |named: &Path| {
@@ -70,7 +64,7 @@ fn file_name(map: &str) -> &str {
 
 fn part_mesh(mesh: &tobj::Mesh) -> Result<TriangleMesh, Reason> {
     let triples = |values: &[f32]| values.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect::<Vec<_>>();
-    if mesh.indices.len() % 3 != 0 {
+    if !mesh.indices.len().is_multiple_of(3) {
         return Err(Reason::syntax("a face is no polygon"));
     }
     Ok(TriangleMesh {

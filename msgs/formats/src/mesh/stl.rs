@@ -62,7 +62,7 @@ fn text_corners(bytes: &[u8]) -> Result<Vec<[f32; 3]>, Reason> {
                 return Err(Reason::Line { line: line_number, what: "a vertex needs three numbers".into() });
             }
             ["endsolid", ..] => ended = true,
-            ["endfacet", ..] if corners.len() % 3 != 0 => {
+            ["endfacet", ..] if !corners.len().is_multiple_of(3) => {
                 return Err(Reason::Line { line: line_number, what: "a facet needs three vertices".into() });
             }
             _ => {}
