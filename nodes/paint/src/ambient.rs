@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Cells with fewer estimates say nothing of their spread.
 const ESTIMATES_MIN: usize = 3;
 /// More cells than this are not asked.
-const CELLS_MAX: usize = 20_000;
+const CELLS_MAX: usize = 6_000;
 /// The steps on the way from no ambient light to four times the lamp, each by sqrt(2).
 const STEPS: i32 = 21;
 const SMALLEST: f32 = 1.0 / 256.0;

@@ -1,9 +1,9 @@
 //! What the painter may be told.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How colour is put onto the surface. All defaults are the paper's rules where it states one (section 2.6).
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
     /// Edge of one texture cell on the plane of its chart. The paper: 1 mm.
@@ -46,8 +46,8 @@ pub struct Config {
     pub white_albedo: f64,
     /// Passes of the 1-2-1 / 2-4-2 / 1-2-1 blur. The paper: 1.
     pub blur_passes: usize,
-    /// Pictures that wait for the final mesh take at most this much memory.
-    pub store_mb: usize,
+    /// Pictures that wait for the final mesh take at most this many MiB of memory.
+    pub memory_mib: usize,
 }
 
 impl Default for Config {
@@ -70,7 +70,7 @@ impl Default for Config {
             white_percentile: 0.99,
             white_albedo: 0.8,
             blur_passes: 1,
-            store_mb: 512,
+            memory_mib: 512,
         }
     }
 }
@@ -117,7 +117,7 @@ impl Config {
         within("white_percentile", self.white_percentile, 0.5, 1.0, "0.5 to 1")?;
         within("white_albedo", self.white_albedo, 0.01, 1.0, "0.01 to 1")?;
         within("blur_passes", self.blur_passes as f64, 0.0, 8.0, "0 to 8 passes")?;
-        within("store_mb", self.store_mb as f64, 1.0, 1e6, "1 to 1000000 MB")
+        within("memory_mib", self.memory_mib as f64, 1.0, 1e6, "1 to 1000000 MiB")
     }
 
     /// Edge of one cell, in metres.

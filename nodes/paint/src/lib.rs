@@ -9,8 +9,8 @@
 //! 1. Only the working region is used, within 15 degrees of the optical axis ([`Region`], [`Picture`]), and only frames
 //!    lit by the lamp, or of the colour phase, without the laser.
 //! 2. The surface is cut into nearly flat charts, each projected onto cells of the asked size ([`Atlas`]). Nothing is
-//!    solved. On the surface a cell is longer by at most 1.22 (`chart_degrees`; fragments of less than 16 cells, which
-//!    noise cuts off, may be stretched more).
+//!    solved. On the surface a cell is longer by at most 1.22 (`chart_degrees`; the grain of a rough surface and small
+//!    fragments may be stretched more).
 //! 3. Each cell looks where it lies in the picture. It must face the camera within 45 degrees, be the nearest thing there
 //!    (z-buffer, to a tolerance), lie clear of edges in depth, and be unsaturated in every pixel that it covers. Its light
 //!    is the mean over those pixels.
@@ -66,6 +66,7 @@
 mod ambient;
 mod atlas;
 mod config;
+mod edge;
 mod finish;
 mod light;
 mod look;

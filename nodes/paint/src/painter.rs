@@ -2,8 +2,9 @@
 
 use crate::atlas::{Atlas, AtlasError};
 use crate::config::ConfigError;
+use crate::edge::Edge;
 use crate::look::{CellRefusal, Look, Rules};
-use crate::occlusion::{Edge, Occlusion};
+use crate::occlusion::Occlusion;
 use crate::picture::FrameRefusal;
 use crate::region::{NoRegion, Region};
 use crate::sample::{Sample, offer};

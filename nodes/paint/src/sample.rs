@@ -55,12 +55,13 @@ impl Sample {
     }
 }
 
-/// Puts an estimate among those of its cell, in place of the one that the draw likes least.
+/// Puts an estimate among those of its cell, which stay in the order of their keys, if the draw likes it better than the
+/// last.
 pub fn offer(kept: &mut [Sample], sample: Sample) {
-    if let Some(worst) = kept.iter_mut().max_by(|a, b| a.key.total_cmp(&b.key))
-        && sample.key < worst.key
-    {
-        *worst = sample;
+    let place = kept.partition_point(|other| other.key <= sample.key);
+    if place < kept.len() {
+        kept[place..].rotate_right(1);
+        kept[place] = sample;
     }
 }
 
@@ -82,21 +83,13 @@ const AGREED: f32 = 0.04;
 pub fn albedo(kept: &[Sample], ambient: &[f32; 3]) -> Option<[f32; 3]> {
     let mut values = [[0.0; 3]; SAMPLES_MAX];
     let mut weights = [0.0; SAMPLES_MAX];
-    let mut count = 0;
-    // In the order of their keys, so that the sum does not depend on the order in which they came.
-    let mut order = [usize::MAX; SAMPLES_MAX];
-    for (i, _) in kept.iter().enumerate().filter(|(_, s)| s.is_some()) {
-        order[count] = i;
-        count += 1;
-    }
-    let order = &mut order[..count];
-    order.sort_unstable_by(|&a, &b| kept[a].key.total_cmp(&kept[b].key));
+    let count = kept.partition_point(Sample::is_some);
     // A full cell was drawn by weight, so its estimates already count by it.
     let drawn = count == kept.len();
-    for (at, &i) in order.iter().enumerate() {
-        let (radiance, irradiance) = (kept[i].radiance(), kept[i].irradiance());
+    for (at, sample) in kept[..count].iter().enumerate() {
+        let (radiance, irradiance) = (sample.radiance(), sample.irradiance());
         values[at] = std::array::from_fn(|c| radiance[c] / (irradiance + ambient[c]).max(1e-4));
-        weights[at] = if drawn { 1.0 } else { unpack(kept[i].weight) };
+        weights[at] = if drawn { 1.0 } else { unpack(sample.weight) };
     }
     robust_mean(&values[..count], &weights[..count])
 }

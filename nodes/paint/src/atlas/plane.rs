@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use geometry::TriangleMesh;
-use nalgebra::{Matrix2, Point2, Point3, SymmetricEigen, Vector2, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// Free texels around the triangles of a chart. A bilinear sample inside a triangle reaches cells up to sqrt(2) away;
 /// those are painted as the nearest place of the chart. The rest keeps the charts apart.
@@ -51,25 +51,17 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane across the chart's axis, turned so that the chart lies along u.
+    /// The plane across the chart's axis, turned so that the chart's rectangle is small and lies along u.
     pub fn of(chart: &Chart, mesh: &TriangleMesh, cell_m: f32) -> Self {
         let axis = chart.axis;
         let helper = if axis.x.abs() < 0.7 { Vector3::x() } else { Vector3::y() };
-        let (a, b) = {
-            let a = axis.cross(&helper).normalize();
-            (a, axis.cross(&a))
-        };
-        let points = || {
-            chart.triangles.iter().flat_map(|&t| mesh.corners(t as usize)).map(|p| {
-                let p = p.coords / cell_m;
-                Vector2::new(a.dot(&p), b.dot(&p))
-            })
-        };
-        let along = principal_direction(points());
+        let a = axis.cross(&helper).normalize();
+        let b = axis.cross(&a);
+        let flat = |p: Point3<f32>| Vector2::new(a.dot(&p.coords), b.dot(&p.coords)) / cell_m;
+        let points: Vec<Vector2<f32>> =
+            chart.triangles.iter().flat_map(|&t| mesh.corners(t as usize)).map(flat).collect();
+        let (along, [low, high]) = smallest_rectangle(&points);
         let (u, v) = ((a * along.x + b * along.y) / cell_m, (b * along.x - a * along.y) / cell_m);
-        let turned = |p: Vector2<f32>| Vector2::new(along.dot(&p), along.x * p.y - along.y * p.x);
-        let far = Vector2::repeat(f32::INFINITY);
-        let (low, high) = points().map(turned).fold((far, -far), |(low, high), p| (low.inf(&p), high.sup(&p)));
         let size = (high - low).map(|extent| (extent.ceil() + 2.0 * PADDING_TEXELS) as u32);
         Self { u, v, axis: axis / cell_m, offset: low.map(|c| PADDING_TEXELS - c), size: size.into() }
     }
@@ -125,15 +117,23 @@ impl Plane {
     }
 }
 
-/// Direction of largest extent (unit vector).
-fn principal_direction(points: impl Iterator<Item = Vector2<f32>> + Clone) -> Vector2<f32> {
-    let (count, sum) = points.clone().fold((0.0, Vector2::zeros()), |(n, sum), p| (n + 1.0, sum + p.cast::<f64>()));
-    let mean: Vector2<f64> = sum / f64::max(count, 1.0);
-    let moment: Matrix2<f64> = points.map(|p| p.cast::<f64>() - mean).map(|d| d * d.transpose()).sum();
-    let eigen = SymmetricEigen::new(moment);
-    let largest = if eigen.eigenvalues[0] >= eigen.eigenvalues[1] { 0 } else { 1 };
-    let direction: Vector2<f32> = eigen.eigenvectors.column(largest).into_owned().cast();
-    direction.try_normalize(1e-3).unwrap_or_else(Vector2::x)
+/// The direction along which the rectangle around the points is smallest, and its corners in that direction and across.
+fn smallest_rectangle(points: &[Vector2<f32>]) -> (Vector2<f32>, [Vector2<f32>; 2]) {
+    // A quarter turn swaps the sides; of those two the wide one is taken.
+    const TURNS: usize = 24;
+    let rectangle = |turn: usize| {
+        let (sine, cosine) = (std::f32::consts::PI * turn as f32 / TURNS as f32).sin_cos();
+        let turned = |p: &Vector2<f32>| Vector2::new(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
+        let far = Vector2::repeat(f32::INFINITY);
+        let corners = points.iter().map(turned).fold([far, -far], |[low, high], p| [low.inf(&p), high.sup(&p)]);
+        (Vector2::new(cosine, sine), corners)
+    };
+    let cost = |[low, high]: &[Vector2<f32>; 2]| {
+        let size = high - low;
+        (size.x + 2.0 * PADDING_TEXELS) * (size.y + 2.0 * PADDING_TEXELS) * if size.x < size.y { 1.001 } else { 1.0 }
+    };
+    let first = rectangle(0);
+    (1..TURNS).map(rectangle).fold(first, |best, next| if cost(&next.1) < cost(&best.1) { next } else { best })
 }
 
 /// Weights of the corners at the place of a triangle that is nearest to a point, and the square of its distance.

@@ -1,5 +1,5 @@
 //! A world that is known exactly: spheres and plates with a known albedo, seen by a camera with a lamp.
-#![allow(dead_code, reason = "each test uses its part")]
+#![allow(dead_code, clippy::unwrap_used, reason = "each test uses its part; helpers of tests")]
 
 use geometry::Camera;
 use nalgebra::{Isometry3, Point2, Point3, Vector3};
@@ -153,7 +153,7 @@ impl Shape {
             Self::Plate { low, high, z } => {
                 let at = (z - from.z) / way.z;
                 let p = from + way * at;
-                let on = at > 0.0 && (low[0]..high[0]).contains(&&p.x) && (low[1]..high[1]).contains(&&p.y);
+                let on = at > 0.0 && (low[0]..high[0]).contains(&p.x) && (low[1]..high[1]).contains(&p.y);
                 on.then(|| (at, Vector3::z()))
             }
         }
