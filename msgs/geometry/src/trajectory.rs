@@ -71,7 +71,7 @@ impl TrajectoryBuffer {
             return Ok(*b);
         }
         let Some(a) = after.checked_sub(1).map(|i| &self.samples[i]) else { return Err(NoPose::Before) };
-        let span = b.stamp_nanos - a.stamp_nanos;
+        let span = b.stamp_nanos.saturating_sub(a.stamp_nanos);
         if span > gap_nanos {
             return Err(NoPose::Gap);
         }
