@@ -74,11 +74,17 @@ impl Reach {
         Isometry3::from_parts(Translation3::from(position), UnitQuaternion::from_rotation_matrix(&rotation))
     }
 
-    /// From a point in the ellipsoid to its surface; 0 for a point outside.
+    /// From a point to the far side of the ellipsoid; a ray that misses it goes on to where it would come near, without
+    /// a jump or a kink, because a hand has none.
     fn to_surface(&self, from: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
+        const SOFT: f64 = 0.25;
         let (p, d) = (from.component_div(&self.half), direction.component_div(&self.half));
-        let (a, b, c) = (d.norm_squared(), p.dot(&d), p.norm_squared() - 1.0);
-        ((b * b - a * c).max(0.0).sqrt() - b).max(0.0) / a
+        let a = d.norm_squared();
+        let to_nearest = -p.dot(&d) / a;
+        // 1 through the middle, 0 where the ray touches.
+        let depth = 1.0 - (p + d * to_nearest).norm_squared();
+        let soft_depth = 0.5 * (depth + depth.hypot(SOFT));
+        to_nearest + (soft_depth / a).sqrt()
     }
 
     /// The lower of camera and laser, above the table.

@@ -7,6 +7,7 @@
 mod aim;
 mod plan;
 mod section;
+mod stroke;
 mod sway;
 
 pub use section::HandSection;
@@ -15,7 +16,7 @@ use crate::Scene;
 use aim::{Aim, Reach};
 use geometry::{METRES_PER_MM, Rig, RigError};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
-use plan::Stroke;
+use stroke::Stroke;
 use sway::Sway;
 use wire::{PeaksPer, Phase};
 
@@ -39,6 +40,7 @@ pub struct Hand {
     reach: Reach,
     strokes: Vec<Stroke>,
     length_m: f64,
+    rest: Aim,
     duration_s: f64,
     two_passes: bool,
     camera_from_body: Isometry3<f64>,
@@ -54,8 +56,6 @@ const AIMING_S: f64 = 0.3;
 const STRIPE_SHARE: f64 = 0.8;
 /// The stripe is no longer than this at the stand-off (paper, section 3: 12 cm).
 const STRIPE_LIMIT_M: f64 = 0.12;
-/// A stroke speeds up and slows down in this share of its time each.
-const RAMP: f64 = 0.15;
 const STAND_OFF_HZ: [f64; 2] = [0.05, 0.5];
 const PACE_HZ: [f64; 2] = [0.1, 0.6];
 const SWAY_HZ: [f64; 2] = [0.15, 2.0];
@@ -79,6 +79,7 @@ impl Hand {
         // The pace and the stand-off wander along one axis of three.
         let one_axis = 3f64.sqrt();
         Ok(Self {
+            rest: strokes.last().map(|stroke| stroke.to).ok_or(HandError::Nothing)?,
             length_m: strokes.iter().map(|stroke| stroke.length_m).sum(),
             reach,
             strokes,
@@ -129,27 +130,14 @@ impl Hand {
         let in_pass = if self.two_passes && t_s >= pass_s { t_s - pass_s } else { t_s }.clamp(0.0, pass_s);
         let uneven = |t: f64| t + self.pace.integral_of_x(t);
         let mut left_m = self.length_m * (uneven(in_pass) / uneven(pass_s)).clamp(0.0, 1.0);
-        let mut aim = None;
         for stroke in &self.strokes {
-            aim = Some(stroke.from.towards(&stroke.to, eased((left_m / stroke.length_m.max(1e-9)).min(1.0))));
             if left_m <= stroke.length_m {
-                break;
+                return stroke.at(left_m / stroke.length_m.max(f64::MIN_POSITIVE));
             }
             left_m -= stroke.length_m;
         }
-        // A plan has at least one stroke.
-        aim.unwrap_or(Aim { azimuth: 0.0, elevation: 0.5, laser: 0.0, shift: nalgebra::Vector3::zeros() })
+        self.rest
     }
-}
-
-/// 0 to 1 with rest at both ends: even speed between two ramps that are smoothsteps.
-fn eased(at: f64) -> f64 {
-    if at > 0.5 {
-        return 1.0 - eased(1.0 - at);
-    }
-    let y = at / RAMP;
-    let way = if y < 1.0 { RAMP * y * y * y * (1.0 - 0.5 * y) } else { at - 0.5 * RAMP };
-    way / (1.0 - RAMP)
 }
 
 fn reach(scene: &Scene, rig: &Rig) -> Result<Reach, HandError> {

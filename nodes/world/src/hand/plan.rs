@@ -1,20 +1,10 @@
-//! Which strokes the hand makes: rounds about the thing with the stripe upright, then strokes from each side up and over
-//! the top with the stripe across, in as many lanes as the stripe is short.
+//! Which strokes the hand makes: to and fro while it goes around the thing, the stripe upright, once with the laser on
+//! each side; and from each side up and over the top with the stripe across, in as many lanes as the stripe is short.
 
 use super::aim::{Aim, Reach};
-use nalgebra::{Point3, Vector3};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-/// One movement without a pause.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
-    /// Where it begins.
-    pub from: Aim,
-    /// Where it ends.
-    pub to: Aim,
-    /// The longer of the ways of camera and laser.
-    pub length_m: f64,
-}
+use super::stroke::Stroke;
+use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// The laser beside the camera, as [`Aim::laser`].
 const LEFT: f64 = PI;
@@ -23,76 +13,105 @@ const ABOVE: f64 = -FRAC_PI_2;
 /// The stripe leans by this much in a round, so that it also crosses what stands upright.
 const LEAN: f64 = 0.2;
 /// Camera and laser stay above this height.
-const CLEARANCE_M: f64 = 0.045;
-/// Elevations of the camera in the second round, and in the only one of a hurried scan.
-const HIGH_ROUND: f64 = 0.70;
-const ONLY_ROUND: f64 = 0.45;
+const CLEARANCE_M: f64 = 0.035;
+/// Strokes in a round, and how far they reach beyond the thing, to look behind legs.
+const CAREFUL: Round = Round { strokes: 12, beyond_m: 0.03 };
+/// The only round of a hurried scan, and its elevation.
+const HURRIED: Round = Round { strokes: 6, beyond_m: -0.005 };
+const HURRIED_ELEVATION: f64 = 0.45;
+/// The round with the laser on the other side is this much higher.
+const HIGHER: f64 = 0.05;
+/// A low round for each stripe's length, and half of one more, of the thing's height.
+const ROUND_HEIGHT: f64 = 1.5;
 /// A stroke over the top begins by looking this share of the thing's height below its middle.
 const FOOT: f64 = 0.35;
 /// The way over the top ends here at the latest.
 const FAR_ELEVATION: f64 = 2.6;
-/// Steps of a numerical search or length.
+/// Steps of the search for an elevation.
 const STEPS: usize = 60;
 
-/// As many strokes as the budget of way allows, the most useful first, at least one; `stripe_m` is the stripe's usable
-/// length.
+struct Round {
+    strokes: usize,
+    beyond_m: f64,
+}
+
+/// As many strokes as the budget of way allows, the most useful first, but at least all around; `stripe_m` is the stripe's
+/// usable length.
 pub fn plan(reach: &Reach, stripe_m: f64, budget_m: f64) -> Vec<Stroke> {
-    let overs = overs(reach, stripe_m);
-    let all = rounds(reach, stripe_m);
-    let first_over = overs.first().map_or(0.0, |&(from, to)| length(reach, &from, &to));
-    let needed: f64 = all.iter().map(|(from, to)| length(reach, from, to)).sum::<f64>() + first_over;
-    let rounds = if needed <= budget_m { all } else { vec![round(ONLY_ROUND, LEFT, 0.0, 1.0)] };
-    let mut strokes: Vec<Stroke> = Vec::new();
-    let mut way = 0.0;
-    for (from, to) in rounds.into_iter().chain(overs) {
-        let move_over = strokes.last().map(|last| (last.to.said_near(&from), from));
-        let more: Vec<Stroke> = move_over
-            .into_iter()
-            .chain([(from, to)])
-            .map(|(from, to)| Stroke { from, to, length_m: length(reach, &from, &to) })
-            .collect();
-        way += more.iter().map(|stroke| stroke.length_m).sum::<f64>();
-        if way > budget_m && !strokes.is_empty() {
+    let [first, other_side] =
+        [(LEFT, 0.0), (RIGHT, HIGHER)].map(|(laser, higher)| rounds(reach, stripe_m, laser, higher));
+    let quarters = overs(reach, stripe_m, [0.0, FRAC_PI_2]);
+    let diagonals = overs(reach, stripe_m, [FRAC_PI_4, 3.0 * FRAC_PI_4]);
+    let mut strokes = Vec::new();
+    first.into_iter().for_each(|to| go_on(reach, &mut strokes, to));
+    if way_m(&strokes) + quarters.first().map_or(0.0, |(from, to)| Stroke::new(reach, *from, *to).length_m) > budget_m {
+        strokes.clear();
+        let round = round(reach, HURRIED_ELEVATION, LEFT, 0.0, &HURRIED);
+        round.into_iter().for_each(|to| go_on(reach, &mut strokes, to));
+    }
+    for more in quarters.into_iter().chain(other_side).chain(diagonals) {
+        let before = strokes.len();
+        go_on(reach, &mut strokes, more);
+        if way_m(&strokes) > budget_m {
+            strokes.truncate(before);
             break;
         }
-        strokes.extend(more);
     }
     strokes
 }
 
-/// Low rounds, one above the other when the thing is taller than the stripe, and a high one the other way about.
-fn rounds(reach: &Reach, stripe_m: f64) -> Vec<(Aim, Aim)> {
+fn way_m(strokes: &[Stroke]) -> f64 {
+    strokes.iter().map(|stroke| stroke.length_m).sum()
+}
+
+/// Moves over to where the next stroke begins, and makes it.
+fn go_on(reach: &Reach, strokes: &mut Vec<Stroke>, (from, to): (Aim, Aim)) {
+    if let Some(last) = strokes.last().map(|last| last.to.said_near(&from)).filter(|last| *last != from) {
+        strokes.push(Stroke::new(reach, last, from));
+    }
+    strokes.push(Stroke::new(reach, from, to));
+}
+
+/// Low rounds, one above the other when the thing is taller than the stripe.
+fn rounds(reach: &Reach, stripe_m: f64, laser: f64, higher: f64) -> Vec<(Aim, Aim)> {
     let height = 2.0 * reach.half.z;
-    let count = (height / (1.3 * stripe_m)).ceil().max(1.0);
-    let low = (0..count as usize).map(|i| {
-        let shift = height * ((i as f64 + 0.5) / count - 0.5);
-        let elevation = lowest(|elevation| {
-            let azimuths = (0..STEPS).map(|step| TAU * step as f64 / STEPS as f64);
-            let aims = azimuths.map(|azimuth| Aim { azimuth, ..round(elevation, LEFT, shift, 1.0).0 });
+    let count = (height / (ROUND_HEIGHT * stripe_m)).ceil().max(1.0);
+    let heights = (0..count as usize).map(|i| height * ((i as f64 + 0.5) / count - 0.5));
+    let each = heights.flat_map(|shift| {
+        let low = lowest(|elevation| {
+            let aims = round(reach, elevation, laser, shift, &CAREFUL).into_iter().map(|(from, _)| from);
             aims.map(|aim| reach.height_m(&aim)).fold(f64::INFINITY, f64::min)
         });
-        round(elevation, LEFT, shift, 1.0)
+        round(reach, low + higher, laser, shift, &CAREFUL)
     });
-    low.chain([round(HIGH_ROUND, RIGHT, 0.0, -1.0)]).collect()
+    each.collect()
 }
 
-fn round(elevation: f64, laser: f64, shift_z: f64, turns: f64) -> (Aim, Aim) {
-    let from = Aim { azimuth: 0.0, elevation, laser: laser - LEAN, shift: Vector3::z() * shift_z };
-    (from, Aim { azimuth: TAU * turns, laser: laser + LEAN, ..from })
-}
-
-/// From each side up and over, there and back, so that the next begins where the last one ended.
-fn overs(reach: &Reach, stripe_m: f64) -> Vec<(Aim, Aim)> {
-    let quarters = [0.0, FRAC_PI_2];
-    let diagonals = [FRAC_PI_2 / 2.0, 3.0 * FRAC_PI_2 / 2.0];
-    let mut strokes = Vec::new();
-    for azimuth in quarters.into_iter().chain(diagonals) {
+/// Once around, each stroke from beyond one edge of the thing, as seen from there, to beyond the other.
+fn round(reach: &Reach, elevation: f64, laser: f64, shift_z: f64, size: &Round) -> Vec<(Aim, Aim)> {
+    let aim = |i: usize| {
+        let azimuth = TAU * i as f64 / size.strokes as f64;
         let across = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);
-        let width = 2.0 * across.component_mul(&reach.half).norm();
-        let lanes = (width / stripe_m).ceil().max(1.0);
-        for lane in 0..lanes as usize {
-            let shift = across * (width * ((lane as f64 + 0.5) / lanes - 0.5));
-            strokes.extend([azimuth, azimuth + PI].map(|azimuth| over(reach, azimuth, shift)));
+        let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+        let sideways = side * (across.component_mul(&reach.half).norm() + size.beyond_m);
+        Aim { azimuth, elevation, laser: laser + side * LEAN, shift: across * sideways + Vector3::z() * shift_z }
+    };
+    (0..size.strokes).map(|i| (aim(i), aim(i + 1))).collect()
+}
+
+/// Up and over along each azimuth: first every lane once, there and back in turn, then every lane the other way.
+fn overs(reach: &Reach, stripe_m: f64, azimuths: [f64; 2]) -> Vec<(Aim, Aim)> {
+    let mut strokes = Vec::new();
+    for pass in 0..2 {
+        for azimuth in azimuths {
+            let across = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);
+            let width = 2.0 * across.component_mul(&reach.half).norm();
+            let lanes = (width / stripe_m).ceil().max(1.0);
+            strokes.extend((0..lanes as usize).map(|lane| {
+                let shift = across * (width * ((lane as f64 + 0.5) / lanes - 0.5));
+                let back = if (lane + pass) % 2 == 0 { 0.0 } else { PI };
+                over(reach, azimuth + back, shift)
+            }));
         }
     }
     strokes
@@ -111,15 +130,4 @@ fn lowest(height_m: impl Fn(f64) -> f64) -> f64 {
     const FROM: f64 = -0.08;
     let elevations = (0..STEPS).map(|step| FROM + (FRAC_PI_2 - FROM) * step as f64 / STEPS as f64);
     elevations.into_iter().find(|&elevation| height_m(elevation) >= CLEARANCE_M).unwrap_or(FRAC_PI_2)
-}
-
-/// The longer of the ways of camera and laser, so that a roll of the handset takes its time too.
-fn length(reach: &Reach, from: &Aim, to: &Aim) -> f64 {
-    let [x, y] = reach.laser_offset_m.into();
-    let way = |p_in_camera: Point3<f64>| {
-        let at =
-            |step: usize| reach.world_from_camera(&from.towards(to, step as f64 / STEPS as f64), 0.0) * p_in_camera;
-        (0..STEPS).map(|step| (at(step + 1) - at(step)).norm()).sum::<f64>()
-    };
-    way(Point3::origin()).max(way(Point3::new(x, y, 0.0)))
 }

@@ -7,31 +7,39 @@ use nalgebra::{Rotation3, Vector3};
 
 /// Edge of a cell of the mesh.
 const CELL_MM: f64 = 1.5;
+/// Trunk and head stand this much higher than their numbers say, so that a scanner can look under the belly.
+const LIFT_MM: f64 = 6.0;
 /// The head turns to its left about this upright axis.
 const HEAD_PIVOT: [f64; 3] = [52.0, 0.0, 84.0];
 const HEAD_TURN_DEG: f64 = 14.0;
 
 /// The cow, painted, in millimetres.
 pub fn cow() -> TriangleMesh {
-    let bounds = [Point::new(-74.0, -34.0, -1.0), Point::new(92.0, 34.0, 118.0)];
+    let bounds = [Point::new(-74.0, -34.0, -1.0), Point::new(92.0, 34.0, 124.0)];
     let mesh = surface_nets(distance, bounds, CELL_MM);
     let coat: Coat = super::cow_coat::coat();
     paint(mesh, &coat)
 }
 
-/// Where a point of the cow was before its head was turned; what is painted on the head turns with it.
+/// Where a point of the trunk was before it was lifted.
+pub fn in_trunk(p: &Point) -> Point {
+    p - LIFT_MM * Vector3::z()
+}
+
+/// Where a point of the trunk was before its head was turned; what is painted on the head turns with it.
 pub fn in_head(p: &Point) -> Point {
     let pivot = Point::from(HEAD_PIVOT);
     pivot + Rotation3::from_axis_angle(&Vector3::z_axis(), -HEAD_TURN_DEG.to_radians()) * (p - pivot)
 }
 
 fn distance(p: &Point) -> f64 {
-    let trunk = union(body(p), neck(p), 14.0);
-    let whole = union(trunk, head(&in_head(p)), 7.0);
+    let q = in_trunk(p);
+    let trunk = union(body(&q), neck(&q), 14.0);
+    let whole = union(trunk, head(&in_head(&q)), 7.0);
     let whole = union(whole, legs(p), 9.0);
-    let whole = union(whole, udder(p), 5.0);
-    let whole = union(whole, tail(p), 3.0);
-    let whole = union(whole, bell(p), 1.5);
+    let whole = union(whole, udder(&q), 5.0);
+    let whole = union(whole, tail(&q), 3.0);
+    let whole = union(whole, bell(&q), 1.5);
     whole.max(-p.z) // flat soles
 }
 
@@ -80,13 +88,13 @@ fn leaf(q: &Point) -> f64 {
 fn legs(p: &Point) -> f64 {
     let q = Point::new(p.x, p.y.abs(), p.z);
     let fore = union(
-        limb(&q, [34.0, 15.0, 48.0], [34.5, 16.0, 24.0], 11.0, 8.6),
-        limb(&q, [34.5, 16.0, 24.0], [35.0, 16.5, 0.0], 8.6, 8.2),
+        limb(&q, [34.0, 15.0, 54.0], [34.5, 16.0, 26.0], 11.0, 8.6),
+        limb(&q, [34.5, 16.0, 26.0], [35.0, 16.5, 0.0], 8.6, 8.2),
         3.0,
     );
     let hind = union(
-        limb(&q, [-37.0, 14.0, 52.0], [-40.0, 16.5, 25.0], 13.0, 8.8),
-        limb(&q, [-40.0, 16.5, 25.0], [-38.0, 16.5, 0.0], 8.8, 8.2),
+        limb(&q, [-37.0, 14.0, 58.0], [-40.0, 16.5, 27.0], 13.0, 8.8),
+        limb(&q, [-40.0, 16.5, 27.0], [-38.0, 16.5, 0.0], 8.8, 8.2),
         3.0,
     );
     let hooves =
@@ -97,7 +105,7 @@ fn legs(p: &Point) -> f64 {
 fn udder(p: &Point) -> f64 {
     let q = Point::new((p.x + 18.0).abs(), p.y.abs(), p.z);
     let bag = ellipsoid(p, [-18.0, 0.0, 38.0], [12.0, 11.0, 10.0]);
-    union(bag, limb(&q, [5.0, 4.8, 31.0], [5.4, 5.2, 25.5], 2.8, 2.3), 1.5)
+    union(bag, limb(&q, [5.0, 4.8, 31.0], [5.4, 5.2, 26.5], 3.0, 2.5), 1.5)
 }
 
 fn tail(p: &Point) -> f64 {

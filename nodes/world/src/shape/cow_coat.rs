@@ -1,7 +1,7 @@
 //! The cow's colours: crisp patches of brown and black on white, a pink muzzle and udder, a red collar with a bell.
 
 use super::coat::{Coat, Zone};
-use super::cow::{BELL, in_head};
+use super::cow::{BELL, in_head, in_trunk};
 use super::solid::{Point, ellipsoid, limb, sphere, union};
 
 const WHITE: [u8; 3] = [233, 228, 216];
@@ -22,24 +22,28 @@ pub fn coat() -> Coat {
         (on_head(|q| sphere(q, [88.5, 5.2, 80.5], 2.6)), EYE),
         (on_head(|q| limb(q, [88.0, 0.0, 72.6], [84.0, 9.5, 73.2], 0.8, 0.8)), RED),
         (on_head(|q| ellipsoid(q, [84.0, 0.0, 76.5], [9.5, 14.0, 10.5])), PINK),
-        (on_head(|q| limb(q, [58.5, 10.5, 105.5], [61.0, 14.5, 116.0], 5.2, 4.0)), HORN),
+        (on_head(|q| limb(q, [58.2, 9.5, 104.5], [61.5, 15.0, 117.0], 6.6, 5.0)), HORN),
         (on_head(|q| ellipsoid(q, [62.5, 22.0, 94.5], [5.2, 8.5, 4.6])), PINK),
-        (Box::new(|p| sphere(p, BELL, 6.0)), GOLD),
-        (Box::new(collar), RED),
+        (on_trunk(|q| sphere(q, BELL, 6.0)), GOLD),
+        (on_trunk(collar), RED),
         (Box::new(|p| p.z - 7.5), HOOF),
-        (Box::new(|p| ellipsoid(p, [-18.0, 0.0, 32.0], [14.0, 13.0, 10.5])), PINK),
-        (Box::new(|p| ellipsoid(p, [-66.0, 3.5, 34.0], [9.0, 9.0, 11.5])), BLACK),
-        (Box::new(|p| ellipsoid(&in_head(p), [78.0, 0.0, 96.0], [18.0, 4.6 + 0.12 * (p.x - 62.0), 14.0])), WHITE),
-        (Box::new(brown), BROWN),
-        (Box::new(black), BLACK),
+        (on_trunk(|q| ellipsoid(q, [-18.0, 0.0, 32.0], [14.0, 13.0, 10.5])), PINK),
+        (on_trunk(|q| ellipsoid(q, [-66.0, 3.5, 34.0], [9.0, 9.0, 11.5])), BLACK),
+        (on_head(|q| ellipsoid(q, [78.0, 0.0, 96.0], [18.0, 4.6, 14.0])), WHITE),
+        (on_trunk(brown), BROWN),
+        (on_trunk(black), BLACK),
     ];
     Coat { zones, ground: WHITE }
+}
+
+fn on_trunk(zone: impl Fn(&Point) -> f64 + Sync + 'static) -> Zone {
+    Box::new(move |p| zone(&in_trunk(p)))
 }
 
 /// The same on both sides of the head.
 fn on_head(zone: impl Fn(&Point) -> f64 + Sync + 'static) -> Zone {
     Box::new(move |p| {
-        let q = in_head(p);
+        let q = in_head(&in_trunk(p));
         zone(&Point::new(q.x, q.y.abs(), q.z))
     })
 }
@@ -56,7 +60,8 @@ fn wander(p: &Point) -> f64 {
 }
 
 fn brown(p: &Point) -> f64 {
-    let head = sphere(&in_head(p), [60.0, 0.0, 94.0], 24.0).max(44.0 - in_head(p).x);
+    let q = in_head(p);
+    let head = ellipsoid(&q, [62.0, 0.0, 95.0], [24.0, 44.0, 22.0]).max(46.0 - q.x);
     let saddle = union(sphere(p, [-6.0, 24.0, 70.0], 20.0), sphere(p, [10.0, 16.0, 84.0], 15.0), 8.0);
     let shoulder = sphere(p, [34.0, -26.0, 60.0], 18.0);
     let thigh = sphere(p, [-46.0, 24.0, 44.0], 14.0);

@@ -62,7 +62,8 @@ impl Tracker {
         index as f64 / self.section.rate_hz - MARGIN_S
     }
 
-    /// A reading, with `seq` 0 for the publisher to count; `None` when it is lost.
+    /// A reading, with `seq` 0 for the publisher to count; `None` when it is lost. Readings behind the sweep keep its
+    /// phase: `End` travels once, behind all of them.
     pub fn sample(&self, index: u64) -> Option<Pose> {
         if self.is_lost(index) {
             return None;
@@ -74,7 +75,7 @@ impl Tracker {
         let rotation_sigma = self.section.rotation_noise_deg.to_radians() * per_axis;
         Some(Pose {
             header: Header {
-                phase: self.hand.phase(t_s),
+                phase: self.hand.phase(t_s.min(self.hand.duration_s().next_down())),
                 stamp_nanos: self.stamp_nanos(index),
                 clock: Clock::Scan,
                 ..Header::default()

@@ -1,0 +1,46 @@
+//! The wiring: readings of the simulated tracker, in their time.
+
+use crate::TrackerSim;
+use kit::Node;
+use world::Setup;
+use wire::{Header, Phase, Pose, Quality, RigidPose, topic};
+
+/// Sends the readings of one scan after the other until it is told to stop.
+pub fn run(mut node: Node) -> anyhow::Result<()> {
+    let setup: Setup = node.spec().config()?;
+    let known = setup.open()?;
+    let mut poses = node.output(&topic::pose(node.instance()))?;
+    let mut readings = TrackerSim::new(known.clone())?;
+    node.ready()?;
+    let mut scanned = None;
+    while let Some(go) = node.wait_for_go(scanned)? {
+        scanned = Some(go.scan);
+        let mut last = 0;
+        for mut pose in &mut readings {
+            last = pose.header.stamp_nanos;
+            if !node.wait_for_turn(&go, last) {
+                break;
+            }
+            pose.header.scan = go.scan;
+            let header = pose.header;
+            poses.send(pose)?;
+            node.finished(&header)?;
+        }
+        let header = Header { scan: go.scan, phase: Phase::End, stamp_nanos: last + 1, ..Header::default() };
+        poses.send(end(header))?;
+        node.finished(&header)?;
+    }
+    node.close()
+}
+
+fn end(header: Header) -> Pose {
+    Pose {
+        header,
+        world_from_body: RigidPose::IDENTITY,
+        position_sigma_m: [0.0; 3],
+        rotation_sigma_rad: [0.0; 3],
+        rotation_lag_nanos: 0,
+        quality: Quality::Lost,
+        reason: "the scan has ended".to_owned(),
+    }
+}
