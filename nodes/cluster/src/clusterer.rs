@@ -3,7 +3,7 @@
 use crate::ball::{Ball, Sample, steps_per_metre};
 use crate::grid::{CentreGrid, distance_squared};
 use crate::movable::{END, MovablePoints, SETTLED};
-use crate::{Config, ConfigError, output};
+use crate::{Config, ConfigError, Table, TablePlane, output};
 use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan};
 
 /// Sorts points into balls, as they come.
@@ -91,7 +91,8 @@ impl BallClusterer {
     }
 
     /// The balls that changed since the last call and have enough points, by number; also a ball that was sent before and
-    /// has since lost so many points to a younger one that it is an outlier (its count says so). After a new scan or revision began, the first of these is [`Extent::Whole`].
+    /// has since lost so many points to a younger one that it is an outlier (its count says so). After a new scan or
+    /// revision began, the first of these is [`Extent::Whole`].
     pub fn changes(&mut self) -> Cloud {
         let mut ids = self.state.take_changed();
         ids.retain(|&id| {
@@ -105,15 +106,23 @@ impl BallClusterer {
         Cloud { header: self.header, extent, points: points.into(), refused }
     }
 
-    /// All balls with enough points, by number; the points of the others are refused as outliers.
+    /// All balls with enough points, by number; the points of the others are refused as outliers, and the balls of the
+    /// table when it is to be removed.
     pub fn whole(&mut self) -> Cloud {
         self.state.take_changed();
         self.afresh = false;
         let least = self.config.least_points;
         let (kept, outliers): (Vec<u32>, Vec<u32>) =
             (0..self.state.balls.len() as u32).partition(|&id| self.state.balls[id as usize].count >= least);
-        let points: Vec<CloudPoint> = output::points(&self.state, &kept, least);
+        let mut points: Vec<CloudPoint> = output::points(&self.state, &kept, least);
         let mut refused = self.take_refused();
+        if self.config.table == Table::Remove
+            && let Some(table) = TablePlane::find(&points)
+        {
+            let all = points.len();
+            points.retain(|ball| table.height_m(ball) > table.margin_m());
+            refuse(&mut refused, "ball of the table", (all - points.len()) as u64);
+        }
         let count = outliers.iter().map(|&id| u64::from(self.state.balls[id as usize].count)).sum();
         refuse(&mut refused, &format!("outlier: in a ball of fewer than {least} points"), count);
         Cloud { header: self.header, extent: Extent::Whole, points: points.into(), refused }

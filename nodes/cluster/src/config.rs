@@ -11,11 +11,26 @@ pub struct Config {
     pub ball_radius_m: f64,
     /// T of the paper: a ball with fewer points is an outlier. Default 4.
     pub least_points: u32,
+    /// Whether the table on which the thing stands is taken away at the end. Default `keep`.
+    pub table: Table,
+    /// Seconds of the scan between two messages of what changed. Default 0.5.
+    pub publish_every_s: f64,
+}
+
+/// What becomes of the largest plane (see [`crate::TablePlane`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Table {
+    /// It is part of the scan.
+    #[default]
+    Keep,
+    /// It and what lies behind it is taken away.
+    Remove,
 }
 
 impl Default for Config {
     fn default() -> Self {
-        Self { ball_radius_m: 0.8e-3, least_points: 4 }
+        Self { ball_radius_m: 0.8e-3, least_points: 4, table: Table::Keep, publish_every_s: 0.5 }
     }
 }
 
@@ -28,6 +43,9 @@ pub enum ConfigError {
     /// Then every ball would be an outlier, or none could be.
     #[error("least_points = 0: a ball has at least the point that founded it; say 1 to keep them all")]
     LeastPoints,
+    /// Never, or for ever.
+    #[error("publish_every_s = {0}: from 0.01 to 3600 is understood")]
+    PublishEvery(f64),
 }
 
 impl Config {
@@ -38,6 +56,9 @@ impl Config {
         }
         if self.least_points == 0 {
             return Err(ConfigError::LeastPoints);
+        }
+        if !(0.01..=3600.0).contains(&self.publish_every_s) {
+            return Err(ConfigError::PublishEvery(self.publish_every_s));
         }
         Ok(())
     }

@@ -16,6 +16,9 @@
 //! mean sigma, over the root of their count: points are taken as independent, so an error of the pose that all points of
 //! a picture share is averaged too well where few pictures saw the ball. Scans bring no colour, so there is none.
 //!
+//! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`TablePlane`]): what the paper
+//! edited by hand.
+//!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
 //! 0.8 mm). Memory: about 1 kB a ball on a surface, and 24 bytes for each point that a later ball might still take over
 //! (farther than D/2 from its centre: about half of them). **Speed**: one look into a hash a point.
@@ -32,7 +35,7 @@
 //!     points: vec![at(0.0, 0.0), at(0.0002, 0.0001), at(-0.0002, -0.0001), at(0.05, 0.0)].into(),
 //!     refused: vec![],
 //! };
-//! let mut clusterer = BallClusterer::new(Config { ball_radius_m: 0.0008, least_points: 3 }).unwrap();
+//! let mut clusterer = BallClusterer::new(Config { ball_radius_m: 0.0008, least_points: 3, ..Config::default() }).unwrap();
 //! clusterer.insert(&scan);
 //! let cloud = clusterer.whole();
 //! assert_eq!(cloud.points.len(), 1);
@@ -45,7 +48,11 @@ mod clusterer;
 mod config;
 mod grid;
 mod movable;
+#[cfg(feature = "node")]
+pub mod node;
 mod output;
+mod table;
 
 pub use clusterer::{BallClusterer, Held};
-pub use config::{Config, ConfigError};
+pub use config::{Config, ConfigError, Table};
+pub use table::TablePlane;

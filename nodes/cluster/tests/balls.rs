@@ -42,7 +42,8 @@ fn dome(count: usize) -> Vec<ScanPoint> {
 
 #[test]
 fn on_a_ball_the_averages_are_closer_and_the_normals_point_out() {
-    let mut clusterer = BallClusterer::new(Config { ball_radius_m: 1e-3, least_points: 5 }).unwrap();
+    let mut clusterer =
+        BallClusterer::new(Config { ball_radius_m: 1e-3, least_points: 5, ..Config::default() }).unwrap();
     clusterer.insert(&scan(0, dome(400_000)));
     let cloud = clusterer.whole();
     assert_eq!((cloud.extent, cloud.header.stamp_nanos), (Extent::Whole, 5));
@@ -76,7 +77,8 @@ fn a_thin_sheet_keeps_both_faces() {
         let to_sensor = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
         ScanPoint { to_sensor, ..point([width_m * noise(i, 0), width_m * noise(i, 1), z]) }
     };
-    let mut clusterer = BallClusterer::new(Config { ball_radius_m: 0.4e-3, least_points: 3 }).unwrap();
+    let mut clusterer =
+        BallClusterer::new(Config { ball_radius_m: 0.4e-3, least_points: 3, ..Config::default() }).unwrap();
     clusterer.insert(&scan(0, (0..60_000).map(face).collect()));
     let cloud = clusterer.whole();
     for p in cloud.points.iter() {
@@ -87,7 +89,8 @@ fn a_thin_sheet_keeps_both_faces() {
 
 #[test]
 fn few_points_have_the_sensors_direction_for_a_normal() {
-    let mut clusterer = BallClusterer::new(Config { ball_radius_m: 1e-3, least_points: 1 }).unwrap();
+    let mut clusterer =
+        BallClusterer::new(Config { ball_radius_m: 1e-3, least_points: 1, ..Config::default() }).unwrap();
     clusterer.insert(&scan(0, vec![point([0.0; 3])]));
     let cloud = clusterer.whole();
     let only = cloud.points[0];

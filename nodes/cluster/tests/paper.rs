@@ -8,7 +8,7 @@ const D: f32 = 1e-3;
 const T: u32 = 3;
 
 fn config() -> Config {
-    Config { ball_radius_m: f64::from(D), least_points: T }
+    Config { ball_radius_m: f64::from(D), least_points: T, ..Config::default() }
 }
 
 fn scan(points: &[[f32; 3]]) -> Scan {
