@@ -24,6 +24,8 @@
 //! ```
 
 mod config;
+#[cfg(feature = "node")]
+pub mod node;
 mod recorder;
 
 pub use config::{Config, ConfigError};

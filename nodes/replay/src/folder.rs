@@ -108,7 +108,7 @@ impl FolderScan {
 }
 
 /// The last message of a camera carries no picture.
-fn empty_frame(header: Header) -> Frame {
+pub(crate) fn empty_frame(header: Header) -> Frame {
     Frame {
         header,
         width: 0,
@@ -120,5 +120,32 @@ fn empty_frame(header: Header) -> Frame {
         gain: 1.0,
         gamma: 1.0,
         data: Vec::new().into(),
+    }
+}
+
+/// The last message of a tracker carries no reading.
+#[cfg(feature = "node")]
+pub(crate) fn no_pose(header: Header) -> Pose {
+    Pose {
+        header,
+        world_from_body: wire::RigidPose::IDENTITY,
+        position_sigma_m: [0.0; 3],
+        rotation_sigma_rad: [0.0; 3],
+        rotation_lag_nanos: 0,
+        quality: wire::Quality::Lost,
+        reason: "the recording ends here".to_owned(),
+    }
+}
+
+/// The last message of a stripe detector carries no peaks.
+#[cfg(feature = "node")]
+pub(crate) fn no_stripe(header: Header) -> wire::Stripe {
+    wire::Stripe {
+        header,
+        width: 0,
+        height: 0,
+        light: wire::Light { laser: false, lamp: false },
+        peaks: Vec::new().into(),
+        refused: Vec::new(),
     }
 }

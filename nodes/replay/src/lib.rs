@@ -26,6 +26,8 @@ mod chunk;
 mod error;
 mod folder;
 mod message;
+#[cfg(feature = "node")]
+pub mod node;
 mod recording;
 mod source;
 mod walk;

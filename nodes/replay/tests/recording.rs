@@ -31,7 +31,11 @@ fn messages() -> Vec<Message> {
 }
 
 fn record(path: &Path, messages: &[Message], finish: bool) {
-    let config = Config { chunk_s: 0.1, ..Config::default() };
+    record_packed(path, messages, finish, 1);
+}
+
+fn record_packed(path: &Path, messages: &[Message], finish: bool, zstd_level: u32) {
+    let config = Config { chunk_s: 0.1, zstd_level, ..Config::default() };
     let metadata = [("limn_version".to_owned(), "test".to_owned())].into();
     let mut recorder = Recorder::create(path, config, &metadata).unwrap();
     for m in messages {
@@ -64,11 +68,20 @@ static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
     std::fs::read(&path).unwrap()
 });
 
+static PLAIN: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let (_folder, path) = place();
+    record_packed(&path, &messages(), true, 0);
+    std::fs::read(&path).unwrap()
+});
+
 #[test]
 fn a_recording_gives_back_every_byte_in_order() {
     let (_folder, path) = place();
     record(&path, &messages(), true);
     assert_eq!(play(&path).unwrap(), (messages(), 0, false));
+    let plain = path.with_file_name("plain.mcap");
+    record_packed(&plain, &messages(), true, 0);
+    assert_eq!(play(&plain).unwrap(), (messages(), 0, false));
     let recording = Recording::open(&path).unwrap();
     let streams: Vec<_> = recording.streams().into_iter().map(|s| (s.key, s.schema, s.messages)).collect();
     let expected = [("a/b/c", "Thing@2:2", 40), ("run/phase", "RunPhase@1:1", 20)];
@@ -162,11 +175,15 @@ proptest! {
     }
 
     #[test]
-    fn turned_bits_never_give_wrong_messages(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..6)) {
+    fn turned_bits_never_give_wrong_messages(
+        packed in any::<bool>(),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..6),
+    ) {
         let (_folder, path) = place();
-        let mut bytes = WHOLE.clone();
+        let mut bytes = if packed { WHOLE.clone() } else { PLAIN.clone() };
         for (at, bit) in flips {
-            bytes[at.index(WHOLE.len())] ^= 1 << bit;
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1 << bit;
         }
         std::fs::write(&path, &bytes).unwrap();
         if let Ok((read, _errors, _damaged)) = play(&path) {

@@ -1,0 +1,122 @@
+//! The wiring: what sources send is kept as it came.
+//!
+//! What is computed from it can be computed again, so it is not kept; but for the stripes, which hold all that is measured
+//! in a laser-lit picture at a hundredth of its size. A laser-lit picture itself is kept on request.
+
+use crate::{Config as Packing, Recorder};
+use anyhow::{Context as _, bail};
+use kit::{Node, RawMessage, RawSubscriber};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use wire::{Frame, Header, Phase, codec};
+
+/// Which pictures are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pictures {
+    /// Those that the lamp lit: colour can be painted again, the stripes stand for the rest.
+    #[default]
+    Lamp,
+    /// All of them: stripes can be found again, with other settings.
+    All,
+}
+
+/// What is recorded, and where.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// The file; one that exists is not overwritten.
+    pub file: PathBuf,
+    /// Which pictures are kept: `lamp` or `all`.
+    pub pictures: Pictures,
+    /// Noted in the recording: the effective configuration of the rig.
+    pub rig_config: String,
+    /// How it is packed.
+    pub packing: Packing,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        let (pictures, rig_config, packing) = Default::default();
+        Self { file: "scan.mcap".into(), pictures, rig_config, packing }
+    }
+}
+
+/// Keys that are kept, and how many messages may wait.
+const KEPT: [(&str, usize); 5] = [
+    ("rig/*/calibration", 8),
+    ("run/phase", 64),
+    ("tracker/*/pose", 1 << 14),
+    ("stripe/*/stripe", 1 << 12),
+    ("camera/*/frame", 48),
+];
+
+/// Records until it is told to stop.
+pub fn run(mut node: Node) -> anyhow::Result<()> {
+    let config: Config = node.spec().config()?;
+    let inputs = KEPT.map(|(key, depth)| node.raw(key, depth));
+    let mut inputs: Vec<RawSubscriber> = inputs.into_iter().collect::<anyhow::Result<_>>()?;
+    let notes = [("limn", env!("CARGO_PKG_VERSION")), ("configuration", &config.rig_config)];
+    let notes: BTreeMap<String, String> = notes.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    let mut recorder = Recorder::create(&config.file, config.packing.clone(), &notes)?;
+    node.ready()?;
+    let (mut begun, mut ended) = (BTreeSet::new(), BTreeSet::new());
+    while node.wait() {
+        for input in &mut inputs {
+            while let Some(message) = input.next() {
+                let Some(header) = keep(&mut node, &mut recorder, &config, &message)? else { continue };
+                let is_stream = message.key.starts_with("camera/") || message.key.starts_with("tracker/");
+                if is_stream && begun.insert(message.key.clone()) {
+                    ended.remove(&message.key);
+                }
+                if is_stream && header.is_end() {
+                    ended.insert(message.key.clone());
+                }
+                if message.key.starts_with("camera/") && !header.is_end() {
+                    node.finished(&header)?;
+                }
+                if is_stream && header.is_end() && ended.len() == begun.len() {
+                    recorder.flush().context("writing the recording")?;
+                    node.finished(&Header { phase: Phase::End, ..header })?;
+                }
+            }
+        }
+    }
+    let kept = recorder.finish()?;
+    tracing::info!("{} messages, {} MB in {}", kept.messages, kept.bytes >> 20, config.file.display());
+    node.close()
+}
+
+/// Keeps a message, and returns its header; what cannot be read is counted, and kept all the same.
+fn keep(
+    node: &mut Node,
+    recorder: &mut Recorder,
+    config: &Config,
+    message: &RawMessage,
+) -> anyhow::Result<Option<Header>> {
+    let Ok(header) = codec::header(&message.bytes) else {
+        node.refuse("message without a header", 1);
+        return Ok(None);
+    };
+    let is_frame = message.schema == codec::schema::<Frame>();
+    let wanted = match (is_frame, config.pictures) {
+        (false, _) | (true, Pictures::All) => true,
+        (true, Pictures::Lamp) => {
+            header.is_end() || codec::decode::<Frame>(&message.bytes).is_ok_and(|frame| frame.light.lamp)
+        }
+    };
+    if wanted {
+        recorder.write(&message.key, &message.schema, header.stamp_nanos, &message.bytes)?;
+    }
+    Ok(Some(header))
+}
+
+/// Refuses a configuration without a file.
+pub fn check(config: &Config) -> anyhow::Result<()> {
+    if config.file.as_os_str().is_empty() {
+        bail!("file = \"\": name a file for the recording");
+    }
+    config.packing.check()?;
+    Ok(())
+}
