@@ -4,7 +4,10 @@ use geometry::TriangleMesh;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::LazyLock;
 use world::{Scene, SceneError};
+
+static COW: LazyLock<Scene> = LazyLock::new(|| Scene::cow().unwrap());
 
 /// One number for each place, so that vertices that paint has doubled count once.
 fn welded(mesh: &TriangleMesh) -> Vec<[usize; 3]> {
@@ -49,8 +52,7 @@ fn assert_closed_manifold(mesh: &TriangleMesh) -> i64 {
 
 #[test]
 fn the_cow_is_one_closed_surface_of_the_right_size() {
-    let scene = Scene::cow().unwrap();
-    let mesh = &scene.subject().mesh;
+    let mesh = &COW.subject().mesh;
     mesh.check().unwrap();
     assert_eq!(assert_closed_manifold(mesh), 2, "like a ball: no holes through it, one piece");
     let [low, high] = mesh.bounds().unwrap();
@@ -64,8 +66,7 @@ fn the_cow_is_one_closed_surface_of_the_right_size() {
 
 #[test]
 fn each_triangle_has_one_colour_and_there_are_many() {
-    let scene = Scene::cow().unwrap();
-    let mesh = &scene.subject().mesh;
+    let mesh = &COW.subject().mesh;
     let mut areas: BTreeMap<[u8; 3], f64> = BTreeMap::new();
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = triangle.map(|i| mesh.colours[i as usize]);
@@ -79,8 +80,7 @@ fn each_triangle_has_one_colour_and_there_are_many() {
 
 #[test]
 fn normals_agree_with_the_triangles() {
-    let scene = Scene::cow().unwrap();
-    let mesh = &scene.subject().mesh;
+    let mesh = &COW.subject().mesh;
     let off = mesh.triangles.iter().enumerate().filter(|(t, triangle)| {
         let flat = mesh.area_normal(*t);
         triangle.iter().any(|&i| flat.dot(&mesh.normals[i as usize]) < 0.5 * flat.norm())
@@ -91,7 +91,7 @@ fn normals_agree_with_the_triangles() {
 
 #[test]
 fn the_same_scene_twice_is_the_same() {
-    assert_eq!(Scene::cow().unwrap(), Scene::cow().unwrap());
+    assert_eq!(*COW, Scene::cow().unwrap());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
 use world::{Hand, Scene, Simulation, Tracker};
 
-const SECONDS: f64 = 20.0;
+const SECONDS: f64 = 10.0;
 
 fn rig_with(tracker: &str) -> Rig {
     const HANDSET: &str = "[camera]\nwidth = 768\nheight = 576\nfx = 1200.0\nfy = 1200.0\ncx = 384.0\ncy = 288.0\n\
@@ -65,16 +65,16 @@ fn without_errors_it_tells_the_truth() {
 #[test]
 fn white_noise_has_the_stated_length_and_no_memory() {
     let all = errors(&but(&[("position_noise_mm", 1.5), ("rotation_noise_deg", 3.0)]), 1);
-    assert_near("position", rms(all.iter().map(|e| e[0])), 1.5e-3, 0.03);
-    assert_near("rotation", rms(all.iter().map(|e| e[1])).to_degrees(), 3.0, 0.03);
+    assert_near("position", rms(all.iter().map(|e| e[0])), 1.5e-3, 0.05);
+    assert_near("rotation", rms(all.iter().map(|e| e[1])).to_degrees(), 3.0, 0.05);
     let product: f64 = all.windows(2).map(|pair| pair[0][0].dot(&pair[1][0])).sum::<f64>() / all.len() as f64;
-    assert!(product.abs() < 0.06 * 1.5e-3f64.powi(2), "{product}");
+    assert!(product.abs() < 0.1 * 1.5e-3f64.powi(2), "{product}");
 }
 
 #[test]
 fn coloured_noise_has_the_stated_size_and_memory() {
     let (mut square, mut product, mut count) = (0.0, 0.0, 0.0);
-    for seed in 0..12 {
+    for seed in 0..16 {
         let all = errors(&but(&[("drift_position_mm", 1.0), ("drift_time_s", 0.3)]), seed);
         square += all.iter().map(|e| e[0].norm_squared()).sum::<f64>();
         product += all.iter().zip(&all[30..]).map(|(a, b)| a[0].dot(&b[0])).sum::<f64>();
@@ -88,8 +88,8 @@ fn coloured_noise_has_the_stated_size_and_memory() {
 fn the_field_has_the_stated_size_and_is_smooth() {
     let one = [("field_position_mm", 8.0), ("field_wavelength_m", 0.5), ("field_growth", 0.0)];
     // One room is one field: its size is the mean over rooms.
-    let rooms: Vec<_> = (0..40).map(|seed| errors(&but(&one), seed)).collect();
-    assert_near("size", rms(rooms.iter().flatten().map(|e| e[0])), 8e-3, 0.15);
+    let rooms: Vec<_> = (0..24).map(|seed| errors(&but(&one), seed)).collect();
+    assert_near("size", rms(rooms.iter().flatten().map(|e| e[0])), 8e-3, 0.2);
     let hand = hand(&but(&one));
     for room in &rooms {
         for (i, pair) in room.windows(2).enumerate() {
@@ -166,8 +166,8 @@ fn lost_readings_have_the_stated_share_and_come_in_rows() {
         gaps += there.windows(2).filter(|pair| pair[0] && !pair[1]).count() as f64;
         all += there.len() as f64;
     }
-    assert_near("share", lost / all, 0.05, 0.12);
-    assert_near("in a row", lost / gaps, 4.0, 0.15);
+    assert_near("share", lost / all, 0.05, 0.15);
+    assert_near("in a row", lost / gaps, 4.0, 0.2);
 }
 
 #[test]
@@ -208,12 +208,12 @@ fn impossible_numbers_are_named() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn any_reading_can_be_had_in_any_order(index in 0u64..2000, seed in any::<u64>()) {
+    fn any_reading_can_be_had_in_any_order(index in 0u64..1000, seed in any::<u64>()) {
         let rig = rig_with("");
         let [one, other] = [(); 2].map(|()| Tracker::new(&rig, hand(&rig), seed).unwrap());
-        for i in (0..40).rev() {
+        for i in (0..20).rev() {
             other.sample(i);
         }
         prop_assert_eq!(one.sample(index), other.sample(index));

@@ -64,7 +64,7 @@ impl Reach {
     /// The camera in the world.
     pub fn world_from_camera(&self, aim: &Aim, nearer_m: f64) -> Isometry3<f64> {
         let outward = aim.outward();
-        let distance = self.to_surface(&aim.shift, &outward) + self.stand_off_m - nearer_m;
+        let distance = self.distance_to_surface(&aim.shift, &outward) + self.stand_off_m - nearer_m;
         let (sin, cos) = (aim.elevation.sin(), aim.elevation.cos());
         let up = Vector3::new(-sin * aim.azimuth.cos(), -sin * aim.azimuth.sin(), cos);
         let axes = Matrix3::from_columns(&[up.cross(&outward), -up, -outward]);
@@ -76,7 +76,7 @@ impl Reach {
 
     /// From a point to the far side of the ellipsoid; a ray that misses it goes on to where it would come near, without
     /// a jump or a kink, because a hand has none.
-    fn to_surface(&self, from: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
+    fn distance_to_surface(&self, from: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
         const SOFT: f64 = 0.25;
         let (p, d) = (from.component_div(&self.half), direction.component_div(&self.half));
         let a = d.norm_squared();

@@ -92,7 +92,7 @@ fn round(reach: &Reach, elevation: f64, laser: f64, shift_z: f64, size: &Round) 
     let aim = |i: usize| {
         let azimuth = TAU * i as f64 / size.strokes as f64;
         let across = Vector3::new(-azimuth.sin(), azimuth.cos(), 0.0);
-        let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+        let side = if i.is_multiple_of(2) { -1.0 } else { 1.0 };
         let sideways = side * (across.component_mul(&reach.half).norm() + size.beyond_m);
         Aim { azimuth, elevation, laser: laser + side * LEAN, shift: across * sideways + Vector3::z() * shift_z }
     };
@@ -109,7 +109,7 @@ fn overs(reach: &Reach, stripe_m: f64, azimuths: [f64; 2]) -> Vec<(Aim, Aim)> {
             let lanes = (width / stripe_m).ceil().max(1.0);
             strokes.extend((0..lanes as usize).map(|lane| {
                 let shift = across * (width * ((lane as f64 + 0.5) / lanes - 0.5));
-                let back = if (lane + pass) % 2 == 0 { 0.0 } else { PI };
+                let back = if (lane + pass).is_multiple_of(2) { 0.0 } else { PI };
                 over(reach, azimuth + back, shift)
             }));
         }

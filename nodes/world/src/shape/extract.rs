@@ -1,14 +1,23 @@
-//! Triangles around a solid: surface nets (Gibson 1998, "Constrained elastic surface nets"): one vertex in each cell that
-//! the surface crosses, one quad around each grid edge that it crosses; so the mesh is closed.
+//! Triangles around a solid: surface nets (Gibson 1998, "Constrained elastic surface nets"): one vertex for each sheet of
+//! the surface in a cell (Nielson 2004, "Dual marching cubes": so that sheets do not touch), one quad around each grid
+//! edge that it crosses; so the mesh is closed.
 
+use super::sheets::{NONE, edge_at, sheets};
 use geometry::TriangleMesh;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Newton steps that bring a vertex onto the surface.
 const PROJECTIONS: usize = 3;
 /// Step of the numerical gradient, in cells.
 const GRADIENT_STEP: f64 = 0.02;
+
+/// Nodes along the side of a block.
+const BLOCK: usize = 5;
+/// A block whose middle is farther off than this many of its half diagonals is not looked into: more than 1, because the
+/// distances are not exact.
+const FAR: f64 = 2.5;
 
 struct Grid {
     origin: Point3<f64>,
@@ -43,46 +52,65 @@ pub fn surface_nets(
     let steps = (high - low + 2.0 * margin) / cell;
     let grid = Grid { origin: low - margin, cell, nodes: [0, 1, 2].map(|axis| steps[axis].ceil() as usize + 1) };
     let values = sample(&distance, &grid);
-    let (vertices, vertex_of_cell) = place_vertices(&grid, &values);
+    let (vertices, vertex_of_edge) = place_vertices(&grid, &values);
     let (vertices, normals) = onto_surface(&distance, vertices, cell);
-    let triangles = connect(&grid, &values, &vertex_of_cell, &vertices);
+    let triangles = connect(&grid, &values, &vertex_of_edge, &vertices);
     TriangleMesh { vertices, normals, triangles, ..TriangleMesh::default() }
 }
 
+/// The distance at each node; far from the surface that of the block's middle must do, since only its sign counts there.
 fn sample(distance: &(impl Fn(&Point3<f64>) -> f64 + Sync), grid: &Grid) -> Vec<f64> {
-    let [width, depth, height] = grid.nodes;
-    let rows = (0..height).into_par_iter().flat_map_iter(|k| (0..depth).map(move |j| (j, k)));
-    let rows: Vec<Vec<f64>> =
-        rows.map(|(j, k)| (0..width).map(|i| distance(&grid.point([i, j, k]))).collect()).collect();
-    rows.concat()
+    let blocks = grid.nodes.map(|n| n.div_ceil(BLOCK));
+    let half_block = Vector3::repeat(0.5 * (BLOCK - 1) as f64 * grid.cell);
+    let far = FAR * half_block.norm();
+    let rows =
+        |size: [usize; 3]| (0..size[2]).into_par_iter().flat_map_iter(move |k| (0..size[1]).map(move |j| (j, k)));
+    let middle = |i, j, k| distance(&(grid.point([i * BLOCK, j * BLOCK, k * BLOCK]) + half_block));
+    let coarse = rows(blocks).flat_map_iter(|(j, k)| (0..blocks[0]).map(move |i| middle(i, j, k)));
+    let coarse: Vec<f64> = coarse.collect();
+    let fine = rows(grid.nodes).flat_map_iter(|(j, k)| {
+        let first = (k / BLOCK * blocks[1] + j / BLOCK) * blocks[0];
+        let row = &coarse[first..first + blocks[0]];
+        (0..grid.nodes[0]).map(move |i| match row[i / BLOCK] {
+            about if about.abs() > far => about,
+            _ => distance(&grid.point([i, j, k])),
+        })
+    });
+    fine.collect()
 }
 
-/// The mean of the points where the surface crosses the cell's edges.
-fn place_vertices(grid: &Grid, values: &[f64]) -> (Vec<Point3<f64>>, Vec<u32>) {
-    const CORNERS: [[usize; 3]; 8] =
-        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
+/// For each sheet in each cell, the mean of the points where it crosses the cell's edges; and for each cell, the vertices
+/// of its twelve edges.
+fn place_vertices(grid: &Grid, values: &[f64]) -> (Vec<Point3<f64>>, BTreeMap<usize, [u32; 12]>) {
     let mut vertices = Vec::new();
-    let mut vertex_of_cell = vec![u32::MAX; values.len()];
+    let mut vertex_of_edge = BTreeMap::new();
     for [i, j, k] in grid.cells() {
-        let corner = |c: usize| CORNERS[c].map(|x| x as f64);
-        let at = CORNERS.map(|[a, b, c]| values[grid.index([i + a, j + b, k + c])]);
-        let mut sum = Vector3::zeros();
-        let mut crossings = 0.0;
-        for a in 0..8 {
-            for b in [1, 2, 4].iter().map(|bit| a | bit).filter(|&b| b != a) {
-                if (at[a] < 0.0) != (at[b] < 0.0) {
-                    let t = at[a] / (at[a] - at[b]);
-                    sum += Vector3::from(corner(a)) * (1.0 - t) + Vector3::from(corner(b)) * t;
-                    crossings += 1.0;
-                }
+        let bits = |corner: usize| [corner & 1, corner >> 1 & 1, corner >> 2];
+        let at = [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
+            let [x, y, z] = bits(corner);
+            values[grid.index([i + x, j + y, k + z])]
+        });
+        let inside = at.map(|value| value < 0.0);
+        if inside.iter().all(|side| *side == inside[0]) {
+            continue;
+        }
+        let sheet_of_edge = sheets(&inside);
+        let mut sums = [(Vector3::zeros(), 0.0); 4];
+        for (corner, axis) in (0..8).flat_map(|corner| (0..3).map(move |axis| (corner, axis))) {
+            let sheet = sheet_of_edge[edge_at(corner, axis)];
+            if corner >> axis & 1 == 0 && sheet != NONE {
+                let mut crossing = Vector3::from(bits(corner).map(|bit| bit as f64));
+                crossing[axis] += at[corner] / (at[corner] - at[corner | 1 << axis]);
+                sums[sheet].0 += crossing;
+                sums[sheet].1 += 1.0;
             }
         }
-        if crossings > 0.0 {
-            vertex_of_cell[grid.index([i, j, k])] = vertices.len() as u32;
-            vertices.push(grid.point([i, j, k]) + sum * (grid.cell / crossings));
-        }
+        let first = vertices.len() as u32;
+        let there = sums.iter().take_while(|(_, count)| *count > 0.0);
+        vertices.extend(there.map(|(sum, count)| grid.point([i, j, k]) + sum * (grid.cell / count)));
+        vertex_of_edge.insert(grid.index([i, j, k]), sheet_of_edge.map(|sheet| first.wrapping_add(sheet as u32)));
     }
-    (vertices, vertex_of_cell)
+    (vertices, vertex_of_edge)
 }
 
 /// Newton along the gradient, never farther than half a cell, so that neighbours keep their order.
@@ -112,7 +140,12 @@ fn onto_surface(
 }
 
 /// A quad around each crossed edge, cut along its shorter diagonal.
-fn connect(grid: &Grid, values: &[f64], vertex_of_cell: &[u32], vertices: &[Point3<f32>]) -> Vec<[u32; 3]> {
+fn connect(
+    grid: &Grid,
+    values: &[f64],
+    vertex_of_edge: &BTreeMap<usize, [u32; 12]>,
+    vertices: &[Point3<f32>],
+) -> Vec<[u32; 3]> {
     let mut triangles = Vec::new();
     for node in grid.cells() {
         let inside = values[grid.index(node)] < 0.0;
@@ -123,13 +156,14 @@ fn connect(grid: &Grid, values: &[f64], vertex_of_cell: &[u32], vertices: &[Poin
             if inside == (values[grid.index(next)] < 0.0) || node[side] == 0 || node[other] == 0 {
                 continue;
             }
-            let cell = |back: usize, down: usize| {
+            let vertex = |back: usize, down: usize| {
                 let mut cell = node;
                 cell[side] -= back;
                 cell[other] -= down;
-                vertex_of_cell[grid.index(cell)]
+                let edge = edge_at(back << side | down << other, axis);
+                vertex_of_edge.get(&grid.index(cell)).map_or(0, |vertices| vertices[edge])
             };
-            let mut quad = [cell(0, 0), cell(1, 0), cell(1, 1), cell(0, 1)];
+            let mut quad = [vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)];
             if !inside {
                 quad.reverse();
             }

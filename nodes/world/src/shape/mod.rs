@@ -7,6 +7,7 @@ mod cow;
 mod cow_coat;
 mod extract;
 mod primitive;
+mod sheets;
 mod solid;
 
 use coat::{Coat, paint};

@@ -45,8 +45,8 @@ const EDGE_MM: f64 = 2.0;
 /// Wall of a mug.
 const WALL_MM: f64 = 4.5;
 /// A cell is this share of the longest side, within limits.
-const CELL_SHARE: f64 = 0.014;
-const CELL_LIMITS_MM: [f64; 2] = [0.6, 2.0];
+const CELL_SHARE: f64 = 0.018;
+const CELL_LIMITS_MM: [f64; 2] = [1.2, 4.0];
 
 /// The thing with sides of the given lengths, in millimetres.
 pub fn primitive(
@@ -78,7 +78,7 @@ fn distance(kind: Primitive, [x, y, z]: [f64; 3], p: &Point) -> f64 {
         Primitive::Cone => cone(p, radius, z),
         Primitive::Mug => mug(p, x, radius, z),
         Primitive::Skittle => {
-            let belly = ellipsoid(p, [0.0, 0.0, 0.33 * z], [half[0], half[1], 0.34 * z]);
+            let belly = ellipsoid(p, [0.0, 0.0, 0.28 * z], [half[0], half[1], 0.36 * z]);
             let neck = limb(p, [0.0, 0.0, 0.4 * z], [0.0, 0.0, 0.8 * z], 0.6 * radius, 0.35 * radius);
             let head = sphere(p, [0.0, 0.0, z - 0.5 * radius], 0.5 * radius);
             union(union(belly, neck, 0.5 * radius), head, 0.3 * radius).max(-p.z)
@@ -98,7 +98,7 @@ fn cone(p: &Point, radius: f64, height: f64) -> f64 {
 fn mug(p: &Point, length: f64, radius: f64, height: f64) -> f64 {
     let cup_at = radius - 0.5 * length;
     let q = Point::new(p.x - cup_at, p.y, p.z);
-    let thickness = 0.55 * WALL_MM;
+    let thickness = 0.8 * WALL_MM;
     let reach = 0.5 * (length - 2.0 * radius).max(4.0 * WALL_MM);
     let ring = upright_ring(&q, [radius, 0.0, 0.52 * height], 2.0 * reach - thickness, thickness);
     let outside = union(cylinder(&q, radius, [0.0, height], EDGE_MM), ring, 3.0);

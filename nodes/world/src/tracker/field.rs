@@ -49,6 +49,9 @@ impl Field {
 }
 
 fn plane_waves(rms: f64, wavelength_m: f64, seed: u64) -> Vec<PlaneWave> {
+    if rms == 0.0 {
+        return Vec::new();
+    }
     // Each wave's amplitude has a random direction and the length that the root mean square needs.
     let amplitude = rms * (2.0 / WAVES as f64).sqrt();
     let direction = |index: u64| normal3(seed, index).normalize();
