@@ -15,6 +15,8 @@ use nalgebra::Vector3;
 const DEFINED_REACHES: f32 = 0.75;
 /// How far the centre of the samples may lie off the foot, in reaches: 0.24 on a straight rim, about 0.4 where the surface ends.
 const LOPSIDED_REACHES: f32 = 0.4;
+/// Farther than this from the surface, in cells, no distance is wanted: more than a cell's diagonal.
+const BAND_CELLS: f32 = 2.0;
 /// Below this cosine a quadric belongs to another sheet or face than the nearest one.
 const LEAST_AGREEMENT: f32 = 0.2;
 
@@ -29,9 +31,10 @@ pub struct Seen {
     pub sigma_m: f32,
 }
 
-fn falloff(squared: f32, quadric: &Quadric) -> f32 {
-    let u = (1.0 - squared / (quadric.reach_m * quadric.reach_m)).max(0.0);
-    u * u * u * u * quadric.weight
+fn falloff(squared: f32, per_reach_squared: f32) -> f32 {
+    let u = (1.0 - squared * per_reach_squared).max(0.0);
+    let u = u * u;
+    u * u
 }
 
 /// What makes a quadric the nearest: its distance, and thrice as much of it along the surface as across. At a crease, the face
@@ -53,7 +56,8 @@ pub fn look(quadrics: &[Quadric], p: &Vector3<f32>) -> Option<Seen> {
     let (nearest, _) = in_reach.iter().min_by(|a, b| remote(a).total_cmp(&remote(b)))?;
     let (mut weights, mut distance, mut sigma, mut gradient) = (0.0, 0.0, 0.0, Vector3::zeros());
     for (quadric, offset) in &in_reach {
-        let weight = falloff(offset.norm_squared(), quadric) * agreement(nearest, quadric);
+        let falloff = falloff(offset.norm_squared(), quadric.reach_m.powi(-2));
+        let weight = falloff * quadric.weight * agreement(nearest, quadric);
         weights += weight;
         distance += weight * quadric.distance(offset);
         sigma += weight * quadric.sigma_m;
@@ -72,27 +76,51 @@ pub struct Corners {
     pub distances_m: Vec<f32>,
 }
 
-/// Calls `visit` with the number of each corner that the quadric reaches, and the corner's offset from its centre.
-fn each_corner(grid: &Grid, key: BlockKey, quadric: &Quadric, mut visit: impl FnMut(usize, Vector3<f32>, f32)) {
-    let along = grid.cells + 1;
-    let cell = grid.cell_m();
-    let span = |axis: usize| {
-        let first = grid.corner_number(key, [0; 3], axis) as f32;
-        let low = ((quadric.centre[axis] - quadric.reach_m) / cell - first).floor().max(0.0) as usize;
-        let high = ((quadric.centre[axis] + quadric.reach_m) / cell - first).ceil().min(grid.cells as f32);
-        low..(high + 1.0).max(0.0) as usize
-    };
-    let reach_squared = quadric.reach_m * quadric.reach_m;
-    for x in span(0) {
-        for y in span(1) {
-            for z in span(2) {
-                let offset = grid.corner(key, [x, y, z]) - quadric.centre;
-                let squared = offset.norm_squared();
-                if squared < reach_squared {
-                    visit((x * along + y) * along + z, offset, squared);
+/// Where the corners of a block stand along each axis.
+struct Lattice {
+    along: usize,
+    cell_m: f32,
+    axes: [Vec<f32>; 3],
+}
+
+impl Lattice {
+    fn new(grid: &Grid, key: BlockKey) -> Self {
+        let along = grid.cells + 1;
+        let axes = [0, 1, 2].map(|axis| (0..along).map(|n| grid.corner(key, [n; 3])[axis]).collect());
+        Self { along, cell_m: grid.cell_m(), axes }
+    }
+
+    /// The corners along an axis that may lie within `reach_m` of `centre`; rounding may add one, but never lose one.
+    fn span(&self, axis: usize, centre: f32, reach_m: f32) -> std::ops::Range<usize> {
+        let first = self.axes[axis][0];
+        // Casts cut towards zero and stop at it: a floor that needs no call.
+        let low = ((centre - reach_m - first) / self.cell_m) as usize;
+        let high = ((centre + reach_m - first) / self.cell_m) as usize + 2;
+        low..high.min(self.along)
+    }
+
+    /// Calls `visit` with the number of each corner that the quadric reaches, and the corner's offset from its centre.
+    fn each_in_reach(&self, quadric: &Quadric, mut visit: impl FnMut(usize, Vector3<f32>, f32)) {
+        let (centre, reach_squared) = (&quadric.centre, quadric.reach_m * quadric.reach_m);
+        for x in self.span(0, centre.x, quadric.reach_m) {
+            let dx = self.axes[0][x] - centre.x;
+            let left = (reach_squared - dx * dx).max(0.0);
+            for y in self.span(1, centre.y, left.sqrt()) {
+                let dy = self.axes[1][y] - centre.y;
+                for z in self.span(2, centre.z, (left - dy * dy).max(0.0).sqrt()) {
+                    let offset = Vector3::new(dx, dy, self.axes[2][z] - centre.z);
+                    let squared = offset.norm_squared();
+                    if squared < reach_squared {
+                        visit((x * self.along + y) * self.along + z, offset, squared);
+                    }
                 }
             }
         }
+    }
+
+    fn corner(&self, n: usize) -> Vector3<f32> {
+        let [x, y, z] = &self.axes;
+        Vector3::new(x[n / (self.along * self.along)], y[n / self.along % self.along], z[n % self.along])
     }
 }
 
@@ -101,13 +129,20 @@ fn each_corner(grid: &Grid, key: BlockKey, quadric: &Quadric, mut visit: impl Fn
 struct Sum {
     remoteness: f32,
     nearest: u32,
+    in_band: bool,
     weight: f32,
     distance: f32,
     offset: Vector3<f32>,
 }
 
-const NOTHING: Sum =
-    Sum { remoteness: f32::INFINITY, nearest: 0, weight: 0.0, distance: 0.0, offset: Vector3::new(0.0, 0.0, 0.0) };
+const NOTHING: Sum = Sum {
+    remoteness: f32::INFINITY,
+    nearest: 0,
+    in_band: false,
+    weight: 0.0,
+    distance: 0.0,
+    offset: Vector3::new(0.0, 0.0, 0.0),
+};
 
 impl Sum {
     /// The distance, or NaN where it is undefined.
@@ -126,27 +161,37 @@ impl Sum {
 /// The distance at every corner of a block; `quadrics` are all that reach it, in the order of their blocks. Two blocks
 /// that share a corner sum the same quadrics in the same order, so they agree on it to the last bit.
 pub fn corners(grid: &Grid, key: BlockKey, quadrics: &[Quadric]) -> Corners {
-    let along = grid.cells + 1;
+    let lattice = Lattice::new(grid, key);
+    let along = lattice.along;
     let mut sums = vec![NOTHING; along * along * along];
     for (index, quadric) in (0..).zip(quadrics) {
-        each_corner(grid, key, quadric, |corner, offset, squared| {
-            let remoteness = remoteness(quadric, &offset, squared);
-            if remoteness < sums[corner].remoteness {
-                sums[corner].remoteness = remoteness;
-                sums[corner].nearest = index;
-            }
+        lattice.each_in_reach(quadric, |corner, offset, squared| {
+            let (sum, remoteness) = (&mut sums[corner], remoteness(quadric, &offset, squared));
+            let nearer = remoteness < sum.remoteness;
+            sum.remoteness = if nearer { remoteness } else { sum.remoteness };
+            sum.nearest = if nearer { index } else { sum.nearest };
         });
     }
+    // A cell that the surface passes has no corner farther from it than its diagonal.
+    let band_m = BAND_CELLS * lattice.cell_m;
+    for (n, sum) in sums.iter_mut().enumerate().filter(|(_, sum)| sum.remoteness.is_finite()) {
+        let nearest = &quadrics[sum.nearest as usize];
+        sum.in_band = nearest.distance(&(lattice.corner(n) - nearest.centre)).abs() < band_m;
+    }
     for quadric in quadrics {
-        each_corner(grid, key, quadric, |corner, offset, squared| {
+        let per_reach_squared = quadric.reach_m.powi(-2);
+        lattice.each_in_reach(quadric, |corner, offset, squared| {
             let sum = &mut sums[corner];
-            let weight = falloff(squared, quadric) * agreement(&quadrics[sum.nearest as usize], quadric);
+            if !sum.in_band {
+                return;
+            }
+            let agreement = agreement(&quadrics[sum.nearest as usize], quadric);
+            let weight = falloff(squared, per_reach_squared) * quadric.weight * agreement;
             sum.weight += weight;
             sum.distance += weight * quadric.distance(&offset);
             sum.offset += offset * weight;
         });
     }
-    let place = |n: usize| [n / (along * along), n / along % along, n % along];
-    let distance = |(n, sum): (usize, &Sum)| sum.distance(quadrics, &grid.corner(key, place(n)));
+    let distance = |(n, sum): (usize, &Sum)| sum.distance(quadrics, &lattice.corner(n));
     Corners { along, distances_m: sums.iter().enumerate().map(distance).collect() }
 }

@@ -95,7 +95,7 @@ impl Model {
         });
 
         let own = |key| self.surfels.get(&key).map_or(&[][..], Vec::as_slice);
-        let changed = update(&mut self.planes, &dilated(&changed), |key| {
+        let changed = update(&mut self.planes, &dilated(changed.keys()), |key| {
             let near = || gather(&self.surfels, key, Vec::as_slice, |s| within_reach(grid, key, &s.position));
             if own(key).is_empty() { Vec::new() } else { planes(grid, own(key), &near()) }
         });
@@ -103,17 +103,18 @@ impl Model {
 
         let (grid, oriented) = (&self.grid, &self.oriented);
         let own = |key| oriented.get(&key).map_or(&[][..], Vec::as_slice);
-        let changed = update(&mut self.quadrics, &dilated(&changed), |key| {
+        let changed = update(&mut self.quadrics, &dilated(changed.keys()), |key| {
             let near = || gather(oriented, key, Vec::as_slice, |p| within_reach(grid, key, &p.position));
             if own(key).is_empty() { Vec::new() } else { quadrics(own(key), &near()) }
         });
-        self.march(&dilated(&changed));
+        self.march(&reached(grid, &changed));
     }
 
     /// Brings `oriented` up to date; returns the blocks in which it changed.
-    fn orient(&mut self, changed: BTreeSet<BlockKey>) -> BTreeSet<BlockKey> {
+    fn orient(&mut self, changed: Changed<Plane>) -> Changed<Plane> {
         if self.planes.values().flatten().all(|plane| plane.sided) {
-            return update(&mut self.oriented, &changed, |key| self.planes.get(&key).cloned().unwrap_or_default());
+            let keys = changed.into_keys().collect();
+            return update(&mut self.oriented, &keys, |key| self.planes.get(&key).cloned().unwrap_or_default());
         }
         let all = orient(&self.grid, &self.planes);
         let keys = self.oriented.keys().chain(all.keys()).copied().collect();
@@ -141,28 +142,47 @@ impl Model {
     }
 }
 
-fn dilated(keys: &BTreeSet<BlockKey>) -> BTreeSet<BlockKey> {
-    keys.iter().copied().flat_map(around).collect()
+/// What a stage held before and holds now in the blocks where that differs; what is the same in both is left out where
+/// that is easily seen.
+type Changed<T> = BTreeMap<BlockKey, Vec<T>>;
+
+fn dilated<'a>(keys: impl Iterator<Item = &'a BlockKey>) -> BTreeSet<BlockKey> {
+    keys.copied().flat_map(around).collect()
 }
 
-/// Computes some blocks of a stage again; returns those that came out different.
-fn update<T: PartialEq + Send>(
+/// The blocks that changed quadrics reach.
+fn reached(grid: &Grid, changed: &Changed<Quadric>) -> BTreeSet<BlockKey> {
+    let reaches = |key, q: &Quadric| grid.distance_squared(key, &q.centre) < q.reach_m * q.reach_m;
+    let mut keys = BTreeSet::new();
+    for (&key, quadrics) in changed {
+        keys.extend(around(key).filter(|&near| quadrics.iter().any(|q| reaches(near, q))));
+    }
+    keys
+}
+
+/// Computes some blocks of a stage again.
+fn update<T: Copy + PartialEq + Send>(
     stage: &mut BTreeMap<BlockKey, Vec<T>>,
     keys: &BTreeSet<BlockKey>,
     compute: impl Fn(BlockKey) -> Vec<T> + Sync,
-) -> BTreeSet<BlockKey> {
+) -> Changed<T> {
     let computed: Vec<(BlockKey, Vec<T>)> = keys.par_iter().map(|&key| (key, compute(key))).collect();
-    let mut changed = BTreeSet::new();
-    for (key, items) in computed {
-        let old = stage.get(&key).map_or(&[][..], Vec::as_slice);
-        if old != items {
-            changed.insert(key);
-            if items.is_empty() {
-                stage.remove(&key);
-            } else {
-                stage.insert(key, items);
-            }
+    let mut changed = Changed::new();
+    for (key, new) in computed {
+        let old = stage.remove(&key).unwrap_or_default();
+        if old != new {
+            changed.insert(key, differing(&old, &new));
+        }
+        if !new.is_empty() {
+            stage.insert(key, new);
         }
     }
     changed
+}
+
+fn differing<T: Copy + PartialEq>(old: &[T], new: &[T]) -> Vec<T> {
+    if old.len() != new.len() {
+        return [old, new].concat();
+    }
+    old.iter().zip(new).filter(|(a, b)| a != b).flat_map(|(a, b)| [*a, *b]).collect()
 }
