@@ -1,4 +1,5 @@
 //! Scenes: the cow is one closed surface, files and bad files are understood, the same seed gives the same bytes.
+#![allow(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
 use geometry::TriangleMesh;
 use nalgebra::Point3;
