@@ -3,10 +3,16 @@
 use geometry::TimedPose;
 use nalgebra::Isometry3;
 use rayon::prelude::*;
+use std::cell::RefCell;
 use std::ops::Range;
 use wire::{Bulk, Clock, Frame, Header, Light, Phase, PixelFormat, Trajectory, TrajectorySample};
 use world::optics::{CameraModelSim, OpticsError, Workspace};
 use world::{Hand, Known, Setup, SetupError};
+
+thread_local! {
+    /// A frame needs some 20 MB while it is made, and asking the system for it costs a tenth of the frame.
+    static MEMORY: RefCell<Workspace> = RefCell::default();
+}
 
 /// The camera on the hand's way.
 #[derive(Debug, Clone)]
@@ -63,12 +69,17 @@ impl CameraSim {
 
     /// One frame.
     pub fn frame(&self, index: u64) -> Frame {
-        self.frame_in(index, &mut Workspace::default())
+        let (phase, light) = self.light(index);
+        let way = self.world_from_camera(index);
+        let mut frame = MEMORY.with_borrow_mut(|memory| self.model.render(index, &way, light, memory));
+        let stamp_nanos = self.stamp_nanos(index);
+        frame.header = Header { phase, seq: index, stamp_nanos, clock: Clock::Scan, ..Header::default() };
+        frame
     }
 
     /// Several frames, rendered on all cores.
     pub fn batch(&self, indices: Range<u64>) -> Vec<Frame> {
-        indices.into_par_iter().map_init(Workspace::default, |memory, index| self.frame_in(index, memory)).collect()
+        indices.into_par_iter().map(|index| self.frame(index)).collect()
     }
 
     /// A frame without pixels, as goes behind the last.
@@ -106,15 +117,8 @@ impl CameraSim {
     /// For tests and reports alone: (u, v) of the laser line's centre wherever it crosses a row (or a column, as the rig
     /// says), as if the laser were on.
     pub fn truth_stripe(&self, index: u64) -> Vec<(f64, f64)> {
-        self.model.truth_stripe(&self.world_from_camera(index), &mut Workspace::default())
-    }
-
-    fn frame_in(&self, index: u64, memory: &mut Workspace) -> Frame {
-        let (phase, light) = self.light(index);
-        let mut frame = self.model.render(index, &self.world_from_camera(index), light, memory);
-        let stamp_nanos = self.stamp_nanos(index);
-        frame.header = Header { phase, seq: index, stamp_nanos, clock: Clock::Scan, ..Header::default() };
-        frame
+        let way = self.world_from_camera(index);
+        MEMORY.with_borrow_mut(|memory| self.model.truth_stripe(&way, memory))
     }
 }
 

@@ -56,10 +56,17 @@ impl View<'_> {
 
 impl LaserImage {
     fn clear(&mut self, width: usize, height: usize) {
-        self.width = width;
-        self.light.resize(width * height, 0.0);
-        for (row, span) in self.spans.iter().enumerate() {
-            self.light[row * width + span[0] as usize..row * width + span[1].max(span[0]) as usize].fill(0.0);
+        if [self.width, self.spans.len()] == [width, height] {
+            // Most of it is dark already.
+            for (row, [first, last]) in self.light.chunks_exact_mut(width).zip(&self.spans) {
+                if let Some(lit) = row.get_mut(*first as usize..*last as usize) {
+                    lit.fill(0.0);
+                }
+            }
+        } else {
+            self.width = width;
+            self.light.clear();
+            self.light.resize(width * height, 0.0);
         }
         self.spans.clear();
         self.spans.resize(height, [width as u32, 0]);

@@ -20,6 +20,9 @@ pub(super) const LAMP_DISTANCE_M: f32 = 0.2;
 /// What is seen where there is nothing: a far wall's share of the room's light.
 const NOTHING: f32 = 0.02;
 
+/// Pixels from one look at a texture to the next, at most.
+const FARTHEST_LOOK: f32 = 4.0;
+
 /// Four values that are linear over a triangle's pixels: red, green, blue; or, under a texture, light, gloss, u and v.
 #[derive(Debug, Clone, Copy)]
 struct Patch {
@@ -115,12 +118,24 @@ impl Patch {
         }
     }
 
-    fn fill_textured(&self, column: usize, row: usize, picture: &LinearTexture, out: [&mut [f32]; 3]) {
+    /// The texture is looked up once in each of its own pixels where those are the larger ones, up to every
+    /// [`FARTHEST_LOOK`], and runs evenly in between.
+    fn fill_textured(&self, column: usize, row: usize, picture: &LinearTexture, [red, green, blue]: [&mut [f32]; 3]) {
         let start = self.start(column, row);
-        let [red, green, blue] = out;
-        for (i, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
-            let [light, gloss, u, v] = std::array::from_fn(|k| start[k] + self.per_u[k] * i as f32);
-            [*red, *green, *blue] = picture.sample([u, v]).map(|albedo| albedo * light + gloss);
+        let at = |i: usize| -> [f32; 4] { std::array::from_fn(|k| start[k] + self.per_u[k] * i as f32) };
+        let look = |i: usize| picture.sample([at(i)[2], at(i)[3]]);
+        let apart = (1.0 / picture.pixels_along([self.per_u[2], self.per_u[3]])).clamp(1.0, FARTHEST_LOOK) as usize;
+        let (mut first, mut from) = (0, look(0));
+        while first < red.len() {
+            let count = apart.min(red.len() - first);
+            let to = look(first + count);
+            let step: [f32; 3] = std::array::from_fn(|k| (to[k] - from[k]) / count as f32);
+            for i in 0..count {
+                let [light, gloss, ..] = at(first + i);
+                let shown = |k: usize| (from[k] + step[k] * i as f32) * light + gloss;
+                (red[first + i], green[first + i], blue[first + i]) = (shown(0), shown(1), shown(2));
+            }
+            (first, from) = (first + count, to);
         }
     }
 }

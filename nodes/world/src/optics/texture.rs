@@ -19,6 +19,11 @@ impl LinearTexture {
         Self { width: texture.width, height: texture.height, pixels: texture.rgb.iter().map(pixel).collect() }
     }
 
+    /// How many of its pixels a step in texture coordinates passes, along the longer axis.
+    pub fn pixels_along(&self, [u, v]: [f32; 2]) -> f32 {
+        (u * self.width as f32).abs().max((v * self.height as f32).abs())
+    }
+
     /// Bilinear between the four pixels around `uv`; beyond its edges the texture repeats.
     #[inline]
     pub fn sample(&self, uv: [f32; 2]) -> [f32; 3] {
