@@ -1,2 +1,14 @@
-//! The binary `limn`.
-fn main() {}
+//! The binary `limn`: all of it is in the library.
+
+use clap::Parser as _;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match limn::cli::run(limn::cli::Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            tracing::error!("{error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

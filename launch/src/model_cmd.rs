@@ -1,0 +1,125 @@
+//! `limn model`: a recording or a scan folder, through the whole pipeline, to a model.
+
+use crate::demo::table;
+use crate::nodes;
+use crate::plan::Plan;
+use crate::run::{self, Course, Harvest};
+use anyhow::{Context as _, Result, bail};
+use clap::Args as ClapArgs;
+use replay::Source;
+use report::{Exhibits, Machine, Report, Run};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use wire::{Frame, Phase};
+
+/// Examples for `--help`.
+pub const HELP: &str = "Examples:
+  limn model out/demo/scan.mcap -o out/again
+  limn model my-scan/ -o out/mine --set cluster.ball_radius_m=0.0005
+INPUT is a recording (MCAP), or a scan folder: rig.toml, frames.csv, poses.csv and the pictures.";
+
+/// The arguments.
+#[derive(Debug, ClapArgs)]
+pub struct Args {
+    /// A recording or a scan folder.
+    pub input: PathBuf,
+    /// Where the model is written.
+    #[arg(short, long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Overrule one value: NODE.KEY=VALUE. May come again.
+    #[arg(long = "set", value_name = "NODE.KEY=VALUE")]
+    pub sets: Vec<String>,
+}
+
+const FILES: [(&str, &str); 2] = [
+    ("launch/replay.toml", include_str!("../replay.toml")),
+    ("launch/pipeline.toml", include_str!("../pipeline.toml")),
+];
+
+/// Makes the model. Fails when a stage failed or anything was lost; what was made is written all the same.
+pub fn run(args: &Args) -> Result<()> {
+    let started = Instant::now();
+    let holds = look(&args.input)?;
+    std::fs::create_dir_all(&args.out).with_context(|| format!("making the folder {}", args.out.display()))?;
+    let out = args.out.canonicalize()?;
+    let launch = crate::demo::files::write(&out, &FILES)?;
+    let plan = Plan::load(&launch, &sets(args, &holds, &out)?, nodes::KINDS)?;
+    std::fs::write(out.join("config.toml"), plan.to_toml()).context("writing the effective configuration")?;
+    let (harvest, outcome) = run::run(plan, &Course { out: &out, sweep_s: None, linger: false })?;
+    let report = tell(args, &harvest, outcome.as_ref().err(), started, &out)?;
+    table::print(&report, &out)?;
+    outcome?;
+    if !report.is_good() {
+        bail!("{} messages lost; {} failures", report.lost(), report.failures.len());
+    }
+    Ok(())
+}
+
+/// What decides which nodes are needed.
+struct Holds {
+    laser_pictures: bool,
+    stripes: bool,
+}
+
+fn look(input: &Path) -> Result<Holds> {
+    let source = Source::open(input)?;
+    let Source::Recording(recording) = &source else { return Ok(Holds { laser_pictures: true, stripes: false }) };
+    let stripes = recording.streams().iter().any(|stream| stream.key.starts_with("stripe/"));
+    let is_laser = |message: &replay::Message| {
+        message.key.starts_with("camera/")
+            && message.decode::<Frame>().is_ok_and(|frame| frame.light.laser && frame.header.phase != Phase::End)
+    };
+    // Laser-lit pictures come in turn with the others: a few tell.
+    const LOOKED_AT: usize = 200;
+    let frames = source.messages()?.filter_map(Result::ok).filter(|message| message.key.starts_with("camera/"));
+    let laser_pictures = frames.take(LOOKED_AT).any(|message| is_laser(&message));
+    if !laser_pictures && !stripes {
+        bail!("{}: neither laser-lit pictures nor stripes in it: there is no shape to find", input.display());
+    }
+    Ok(Holds { laser_pictures, stripes })
+}
+
+fn sets(args: &Args, holds: &Holds, out: &Path) -> Result<Vec<String>> {
+    let text = |path: &Path| toml::Value::String(path.display().to_string()).to_string();
+    let mut sets = vec![
+        format!("replay.file={}", text(&args.input.canonicalize()?)),
+        format!("export.folder={}", text(out)),
+        "run.pace=fast".to_owned(),
+    ];
+    if !holds.laser_pictures && holds.stripes {
+        sets.push("replay.stripes=true".to_owned());
+        sets.push("nodes.stripe.enabled=false".to_owned());
+    }
+    sets.extend(args.sets.iter().cloned());
+    Ok(sets)
+}
+
+fn tell(
+    args: &Args,
+    harvest: &Harvest,
+    failure: Option<&anyhow::Error>,
+    started: Instant,
+    out: &Path,
+) -> Result<Report> {
+    let run = Run {
+        object: args.input.display().to_string(),
+        pace: "fast".to_owned(),
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        ..Run::default()
+    };
+    let report = Report {
+        title: format!("Limn: {}", args.input.display()),
+        run,
+        machine: Machine::here(),
+        counts: harvest.counts(),
+        stages: harvest.stages(),
+        times: harvest.times(started),
+        failures: failure.map(|error| format!("{error:#}")).into_iter().collect(),
+        ..Report::default()
+    };
+    report.write_json(&out.join("report.json"))?;
+    let model = harvest.model.as_ref().map(report::painted).filter(|model| model.mesh.check().is_ok());
+    report.write_html(&out.join("report.html"), &Exhibits { model: model.as_ref(), truth: None })?;
+    Ok(report)
+}

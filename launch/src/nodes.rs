@@ -1,0 +1,197 @@
+//! All nodes that are built into this program: the one table that `limn node`, launch files and `limn graph` read.
+
+use crate::kind::{Kind, check, defaults};
+use wire::topic;
+
+/// What most nodes have in common; each entry below says where it differs.
+const PLAIN: Kind = Kind {
+    name: "",
+    about: "",
+    source: false,
+    paces: true,
+    required: true,
+    inputs: &[],
+    paths: &[],
+    takes: |_| Vec::new(),
+    gives: |_| Vec::new(),
+    defaults: || serde_json::Value::Null,
+    check: |_| Ok(()),
+    run: |_| Ok(()),
+};
+
+/// The kinds, sources first and then along the way of the data.
+pub const KINDS: &[Kind] = &[
+    Kind {
+        name: "camera_sim",
+        about: "pictures of a world that is known exactly",
+        source: true,
+        paths: &["scene", "object", "rig"],
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| vec![topic::frame(&node.instance).key, topic::truth_trajectory(&node.instance).key],
+        defaults: defaults::<world::Setup>,
+        check: |config| check(config, |_: &world::Setup| Ok::<_, String>(())),
+        run: camera_sim::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "tracker_sim",
+        about: "where the simulated handset is, with an honest tracker's errors",
+        source: true,
+        paths: &["scene", "object", "rig"],
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| vec![topic::pose(&node.instance).key],
+        defaults: defaults::<world::Setup>,
+        check: |config| check(config, |_: &world::Setup| Ok::<_, String>(())),
+        run: tracker_sim::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "replay",
+        about: "plays a recording or a scan folder as if it were happening",
+        source: true,
+        inputs: &["camera", "tracker", "rig"],
+        paths: &["file"],
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| {
+            let (camera, tracker) = (topic::frame(node.of("camera")).key, topic::pose(node.of("tracker")).key);
+            vec![camera, tracker, topic::calibration(node.of("rig")).key]
+        },
+        defaults: defaults::<replay::node::Config>,
+        check: |config| check(config, replay_file),
+        run: replay::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "stripe",
+        about: "subpixel peaks of the laser line, each with its uncertainty",
+        inputs: &["camera", "rig"],
+        takes: |node| vec![topic::frame(node.of("camera")).key, topic::calibration(node.of("rig")).key],
+        gives: |node| vec![topic::stripe(&node.instance).key],
+        defaults: defaults::<stripe::Config>,
+        check: |config| check(config, stripe::Config::check),
+        run: stripe::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "triangulate",
+        about: "camera ray and laser sheet meet: lit points in the camera's frame",
+        inputs: &["camera", "rig"],
+        takes: |node| vec![topic::stripe(node.of("camera")).key, topic::calibration(node.of("rig")).key],
+        gives: |node| vec![topic::profile(&node.instance).key],
+        defaults: defaults::<triangulate::Config>,
+        check: |config| check(config, triangulate::Config::check),
+        run: triangulate::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "register",
+        about: "points and the camera's way in the world, by the tracker's poses",
+        inputs: &["camera", "tracker", "rig"],
+        takes: |node| {
+            let (profile, pose) = (topic::profile(node.of("camera")).key, topic::pose(node.of("tracker")).key);
+            vec![profile, pose, topic::calibration(node.of("rig")).key]
+        },
+        gives: |node| vec![topic::scan(&node.instance).key, topic::trajectory(&node.instance).key],
+        defaults: defaults::<register::Config>,
+        check: |config| check(config, register::Config::check),
+        run: register::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "cluster",
+        about: "the paper's ball clustering: a thinned cloud, outliers gone",
+        inputs: &["camera"],
+        takes: |node| vec![topic::scan(node.of("camera")).key],
+        gives: |_| vec![topic::cloud().key],
+        defaults: defaults::<cluster::Config>,
+        check: |config| check(config, cluster::Config::check),
+        run: cluster::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "surface",
+        about: "the surface through the cloud: now and then a live one, and the clean one at the end",
+        // Its messages are few and far between: a source that waited for them would wait for nothing.
+        paces: false,
+        takes: |_| vec![topic::cloud().key],
+        gives: |_| vec![topic::mesh().key],
+        defaults: defaults::<surface::Config>,
+        check: |config| check(config, surface::Config::check),
+        run: surface::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "paint",
+        about: "colour from the lamp-lit pictures onto the surface",
+        inputs: &["camera", "rig"],
+        takes: |node| {
+            let (camera, rig) = (node.of("camera"), node.of("rig"));
+            vec![
+                topic::frame(camera).key,
+                topic::trajectory(camera).key,
+                topic::mesh().key,
+                topic::calibration(rig).key,
+            ]
+        },
+        gives: |_| vec![topic::textured().key],
+        defaults: defaults::<paint::Config>,
+        check: |config| check(config, paint::Config::check),
+        run: paint::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "export",
+        about: "writes cloud, surface and model as PLY, STL, OBJ and GLB",
+        paces: false,
+        takes: |_| vec![topic::cloud().key, topic::mesh().key, topic::textured().key],
+        defaults: defaults::<export::Config>,
+        check: |config| check(config, export::Config::check),
+        run: export::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "record",
+        about: "keeps what cannot be computed again in an MCAP file",
+        // What sources send, and the stripes: the rest can be computed again.
+        takes: |_| {
+            let sent = [topic::frame("*").key, topic::pose("*").key, topic::stripe("*").key];
+            sent.into_iter().chain([topic::calibration("*").key, topic::run_phase().key]).collect()
+        },
+        defaults: defaults::<record::node::Config>,
+        check: |config| check(config, record::node::check),
+        run: record::node::run,
+        ..PLAIN
+    },
+    #[cfg(feature = "view")]
+    Kind {
+        name: "view",
+        about: "the operator's eyes: everything, live, in Rerun's web page",
+        // A viewer that is stuck slows nobody, and one that dies ends nothing.
+        paces: false,
+        required: false,
+        inputs: &["camera", "rig"],
+        takes: |node| {
+            let (camera, rig) = (node.of("camera"), node.of("rig"));
+            let seen = [topic::frame(camera).key, topic::stripe(camera).key, topic::scan(camera).key];
+            let shown = [topic::trajectory(camera).key, topic::calibration(rig).key];
+            let made = [topic::cloud().key, topic::mesh().key, topic::textured().key];
+            seen.into_iter().chain(shown).chain(made).collect()
+        },
+        defaults: defaults::<view::Config>,
+        check: |config| check(config, view::Config::check),
+        run: |node| {
+            let config: view::Config = node.spec().config()?;
+            view::node::run(node, config)
+        },
+        ..PLAIN
+    },
+];
+
+fn replay_file(config: &replay::node::Config) -> Result<(), &'static str> {
+    if config.file.as_os_str().is_empty() { Err("file = \"\": name a recording (MCAP) or a scan folder") } else { Ok(()) }
+}
+
+/// The kind of a name.
+pub fn find(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.name == name)
+}

@@ -1,0 +1,32 @@
+//! The log: levels found again, one name in front of each line.
+
+use limn::backoff::{Backoff, MOST, WINDOW};
+use limn::log::{Line, format, parse};
+use std::time::{Duration, Instant};
+use wire::LogLevel;
+
+#[test]
+fn lines_of_nodes_keep_their_level() {
+    let line = parse("stripe", "ERROR no laser \n");
+    assert_eq!(line, Line { node: "stripe".into(), level: LogLevel::Error, text: "no laser".into() });
+    assert_eq!(parse("stripe", " INFO ready").text, "ready");
+    assert_eq!(parse("sh", "INFORMATION is free").level, LogLevel::Info);
+    assert_eq!(parse("sh", "INFORMATION is free").text, "INFORMATION is free");
+    assert_eq!(parse("sh", "\x1b[2Jgone").text, "[2Jgone", "a node must not paint the terminal");
+}
+
+#[test]
+fn the_name_stands_in_front() {
+    let line = Line { node: "stripe".into(), level: LogLevel::Warn, text: "dim".into() };
+    assert_eq!(format(&line, 8, false), "  stripe | WARN dim");
+    assert!(format(&line, 8, true).contains("\x1b[33m"));
+}
+
+#[test]
+fn a_node_that_fails_too_often_has_failed_for_good_and_old_failures_are_forgiven() {
+    let (mut backoff, start) = (Backoff::default(), Instant::now());
+    let pauses: Vec<Duration> = (0..MOST).map(|_| backoff.failed(start).unwrap()).collect();
+    assert!(pauses.windows(2).all(|pair| pair[0] <= pair[1]), "{pauses:?}");
+    assert_eq!(backoff.failed(start), None);
+    assert_eq!(backoff.failed(start + WINDOW + Duration::from_secs(1)), Some(pauses[0]));
+}
