@@ -44,7 +44,7 @@ pub use bulk::Bulk;
 pub use calibration::{Calibration, CameraIntrinsics, LaserPlane, PeaksPer};
 pub use catalogue::{catalogue, layout_text};
 pub use cloud::{Cloud, CloudPoint, Extent};
-pub use frame::{Frame, Light, PixelFormat};
+pub use frame::{Frame, FrameError, Light, PixelFormat};
 pub use header::{Clock, Header, Phase, Refusal, RunPhase};
 pub use housekeeping::{Health, InputHealth, LogLevel, LogLine, Progress};
 pub use layout::{Layout, Message, fold, fold_str};

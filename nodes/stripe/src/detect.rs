@@ -1,0 +1,154 @@
+//! A picture in, its stripe out.
+
+use crate::channel::LaserChannel;
+use crate::lateral::{Averaging, Lateral, LinePeak};
+use crate::measure::{Peak, measure};
+use crate::refusal::{Reason, Refusals};
+use crate::search::{Run, Search};
+use crate::window::Window;
+use crate::{Config, ConfigError, noise};
+use wire::{Frame, FrameError, LaserPlane, PeaksPer, Stripe, StripePeak};
+
+/// Around a stretch that stands out; enough for lines up to about 2 px wide, wider ones are read again.
+const REACH_PX: usize = 14;
+
+/// Finds the laser line in pictures of one rig. It keeps its buffers: in the long run nothing is allocated but the result.
+#[derive(Debug)]
+pub struct StripeDetector {
+    config: Config,
+    channel: LaserChannel,
+    peaks_per: PeaksPer,
+    search: Search,
+    row: Vec<u8>,
+    window: Window,
+    peaks: Vec<LinePeak>,
+    lateral: Lateral,
+}
+
+impl StripeDetector {
+    /// A detector for this laser: of the plane only its channel weights and the direction of its stripe are used.
+    ///
+    /// # Errors
+    /// A configuration outside its ranges, or weights that no laser can have.
+    pub fn new(config: Config, laser: &LaserPlane) -> Result<Self, ConfigError> {
+        config.check()?;
+        Ok(Self {
+            channel: LaserChannel::new(laser.channel_weights, config.saturation_level)?,
+            peaks_per: laser.peaks_per,
+            search: Search::new(config.max_width_px),
+            row: Vec::new(),
+            window: Window::default(),
+            peaks: Vec::new(),
+            lateral: Lateral::default(),
+            config,
+        })
+    }
+
+    /// All peaks of the picture. Without the laser there are none.
+    ///
+    /// # Errors
+    /// A frame whose bytes contradict its header.
+    pub fn process(&mut self, frame: &Frame) -> Result<Stripe, FrameError> {
+        frame.check()?;
+        let mut refusals = Refusals::default();
+        self.peaks.clear();
+        if frame.light.laser {
+            self.find(frame, &mut refusals);
+            let Config { lateral_lines: lines, link_px, speckle_contrast: contrast, .. } = self.config;
+            self.lateral.average(&mut self.peaks, Averaging { lines, link_px, contrast });
+        }
+        Ok(Stripe {
+            header: frame.header.derived(),
+            width: frame.width,
+            height: frame.height,
+            light: frame.light,
+            peaks: self.peaks.iter().map(|peak| self.to_wire(peak)).collect(),
+            refused: refusals.to_wire(),
+        })
+    }
+
+    /// Both passes: over all pixels for what stands out, then to a fraction of a pixel there.
+    fn find(&mut self, frame: &Frame, refusals: &mut Refusals) {
+        let levels = self.channel.levels(frame.format);
+        self.row.resize(frame.width as usize, 0);
+        let noise_levels = noise::sigma_levels(self.search.arch, frame, &levels, &mut self.row);
+        let sigma = (noise_levels / levels.per_grey).max(self.config.noise_floor);
+        let height = self.config.min_amplitude.max(self.config.min_noise_ratio * sigma);
+        let threshold = (height * levels.per_grey).clamp(1.0, 254.0) as u8;
+        self.search.run(frame, &levels, self.peaks_per, threshold);
+        let mut next = 0;
+        while let Some(&Run { line, .. }) = self.search.runs.get(next) {
+            let count = self.search.runs[next..].iter().take_while(|run| run.line == line).count();
+            self.line(frame, next..next + count, sigma, refusals);
+            next += count;
+        }
+    }
+
+    /// The peaks of one line, the best of them marked.
+    fn line(&mut self, frame: &Frame, runs: std::ops::Range<usize>, sigma: f32, refusals: &mut Refusals) {
+        let start = self.peaks.len();
+        // What stands out beside a clipped core, or in a ragged flank, belongs to the peak before it.
+        let mut taken_to = f32::NEG_INFINITY;
+        for at in runs {
+            let run = self.search.runs[at];
+            if (run.first as f32) < taken_to {
+                continue;
+            }
+            match self.peak(frame, run, sigma) {
+                Ok(peak) if peak.position < taken_to => {}
+                Ok(peak) => {
+                    taken_to = peak.ends;
+                    self.peaks.push(LinePeak { line: run.line, best: false, peak });
+                }
+                Err(reason) => refusals.count(reason),
+            }
+        }
+        while self.peaks.len() - start > self.config.max_peaks_per_line {
+            let smallest = (start..self.peaks.len())
+                .min_by(|&a, &b| self.peaks[a].peak.amplitude.total_cmp(&self.peaks[b].peak.amplitude))
+                .unwrap_or(start);
+            self.peaks.remove(smallest);
+            refusals.count(Reason::Crowded);
+        }
+        let peaks = &mut self.peaks[start..];
+        let largest = peaks.iter().map(|p| p.peak.amplitude).fold(0.0, f32::max);
+        let enough = (1.0 - self.config.tie_fraction) * largest;
+        if let Some(best) = peaks.iter_mut().find(|p| p.peak.amplitude >= enough) {
+            best.best = true;
+        }
+    }
+
+    /// One peak; a window that proves too small is read again as large as the widest line needs.
+    fn peak(&mut self, frame: &Frame, mut run: Run, sigma: f32) -> Result<Peak, Reason> {
+        let widest = (4.0 * self.config.max_width_px) as usize + REACH_PX;
+        let mut result = Err(Reason::Shapeless);
+        for reach in [REACH_PX + (run.last - run.first) as usize, widest] {
+            self.window.read(&self.channel, frame, self.peaks_per, run, reach);
+            run.last = self.window.clipped_to(run.last);
+            result = measure(&self.window, run, sigma, &self.config);
+            if result != Err(Reason::Wide) {
+                break;
+            }
+        }
+        result
+    }
+
+    fn to_wire(&self, found: &LinePeak) -> StripePeak {
+        let LinePeak { line, best, ref peak } = *found;
+        let line = line as f32;
+        let (u_px, v_px) = match self.peaks_per {
+            PeaksPer::Row => (peak.position, line),
+            PeaksPer::Column => (line, peak.position),
+        };
+        let best = if best { StripePeak::BEST } else { 0 };
+        let clipped = if peak.clipped { StripePeak::SATURATED } else { 0 };
+        StripePeak {
+            u_px,
+            v_px,
+            sigma_px: peak.noise_variance.sqrt(),
+            amplitude: peak.amplitude,
+            width_px: peak.width,
+            flags: best | clipped,
+        }
+    }
+}
