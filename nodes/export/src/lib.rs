@@ -29,6 +29,8 @@
 mod config;
 mod exporter;
 mod held;
+#[cfg(feature = "node")]
+pub mod node;
 
 pub use config::{Config, ConfigError};
 pub use exporter::{ExportError, Exporter, Written};

@@ -45,21 +45,24 @@ pub(crate) struct Window {
     reached: BTreeMap<String, i64>,
     scan: u64,
     window_nanos: i64,
+    /// The stamp that was admitted last.
+    admitted: Option<i64>,
 }
 
 impl Window {
     pub(crate) fn new(progress: Input<Progress>, consumers: &[String], window_ms: u64) -> Self {
         let reached = consumers.iter().map(|node| (node.clone(), 0)).collect();
-        Self { progress, reached, scan: 0, window_nanos: window_ms as i64 * 1_000_000 }
+        Self { progress, reached, scan: 0, window_nanos: window_ms as i64 * 1_000_000, admitted: None }
     }
 
     /// A new scan starts at 0 for everyone.
     pub(crate) fn start_scan(&mut self, scan: u64) {
         self.scan = scan;
+        self.admitted = None;
         self.reached.values_mut().for_each(|stamp| *stamp = 0);
     }
 
-    /// True when a message with this stamp may be sent.
+    /// True when a message with this stamp may be sent: it lies within the window, or everybody has done all there was.
     pub(crate) fn admits(&mut self, stamp_nanos: i64) -> bool {
         while let Some(progress) = self.progress.next() {
             if let Some(stamp) = self.reached.get_mut(&progress.node)
@@ -68,7 +71,13 @@ impl Window {
                 *stamp = (*stamp).max(progress.header.stamp_nanos);
             }
         }
-        self.reached.values().all(|stamp| stamp_nanos <= stamp + self.window_nanos)
+        let admitted = self.admitted.unwrap_or(i64::MIN);
+        let may = |reached: &i64| stamp_nanos <= reached + self.window_nanos || admitted <= *reached;
+        let admits = self.reached.values().all(may);
+        if admits {
+            self.admitted = Some(stamp_nanos);
+        }
+        admits
     }
 
     /// Who is furthest behind.

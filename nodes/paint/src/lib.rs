@@ -70,6 +70,8 @@ mod edge;
 mod finish;
 mod light;
 mod look;
+#[cfg(feature = "node")]
+pub mod node;
 mod occlusion;
 mod painter;
 mod picture;

@@ -68,6 +68,8 @@ mod grid;
 mod holes;
 mod marching;
 mod model;
+#[cfg(feature = "node")]
+pub mod node;
 mod orient;
 mod plane;
 mod quadric;

@@ -25,6 +25,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "node")]
+pub mod node;
+
 use geometry::Rig;
 use wire::Pose;
 use world::{Hand, HandError, Scene, SimulationError, Tracker};

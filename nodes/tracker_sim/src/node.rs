@@ -10,13 +10,13 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let setup: Setup = node.spec().config()?;
     let known = setup.open()?;
     let mut poses = node.output(&topic::pose(node.instance()))?;
-    let mut readings = TrackerSim::new(known.clone())?;
+    let readings = TrackerSim::new(&known.scene, &known.rig, setup.seconds, known.seed)?;
     node.ready()?;
     let mut scanned = None;
     while let Some(go) = node.wait_for_go(scanned)? {
         scanned = Some(go.scan);
         let mut last = 0;
-        for mut pose in &mut readings {
+        for mut pose in readings.clone() {
             last = pose.header.stamp_nanos;
             if !node.wait_for_turn(&go, last) {
                 break;

@@ -1,0 +1,45 @@
+//! The result in the terminal.
+
+use crate::live::print as write;
+use anyhow::Result;
+use report::Report;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Prints the numbers that matter, and where the rest is.
+pub fn print(report: &Report, out: &Path) -> Result<()> {
+    let mut text = String::from("\n");
+    let mut row = |what: &str, value: String| {
+        // A String takes all text.
+        let _ = writeln!(text, "  {what:<34} {value}");
+    };
+    row("points", report.counts.points.to_string());
+    row("balls", report.counts.cloud_points.to_string());
+    row("triangles", report.counts.triangles.to_string());
+    row("area covered", format!("{:.0} mm2", report.counts.area_mm2));
+    if let Some(comparison) = &report.comparison {
+        let d = &comparison.model_to_truth;
+        let (rms, median, p95, max) = (d.rms_mm, d.median_mm, d.p95_mm, d.max_mm);
+        row("model to truth", format!("rms {rms:.3} mm, median {median:.3}, 95 % {p95:.3}, max {max:.2}"));
+        let mut shares = |what: &str, completeness: &geometry::Completeness| {
+            let share = |w: &geometry::Within| format!("{:.1} % within {} mm", w.share * 100.0, w.distance_mm);
+            row(what, completeness.within.iter().map(share).collect::<Vec<_>>().join(", "));
+        };
+        shares("truth to model", &comparison.truth_to_model);
+        if let Some(seen) = &comparison.seen_truth_to_model {
+            shares("truth that the camera could see", seen);
+        }
+    }
+    if let Some(colour) = &report.colour {
+        row("colour against albedo", format!("rms {:.1} of 255", colour.rms_255));
+    }
+    for time in &report.times {
+        row(&time.what, format!("{:.1} s", time.seconds));
+    }
+    row("messages lost", report.lost().to_string());
+    for failure in &report.failures {
+        row("FAILED", failure.clone());
+    }
+    let _ = writeln!(text, "\n  {}", out.join("report.html").display());
+    write(&text)
+}

@@ -1,0 +1,70 @@
+//! What one scan brought, as numbers for its report.
+
+use super::Harvest;
+use geometry::TriangleMesh;
+use report::{Counts, Refused, Stage, Time};
+use std::time::Instant;
+use wire::Health;
+
+impl Harvest {
+    /// How much of everything there was.
+    pub fn counts(&self) -> Counts {
+        let received = |kind: &str, stream: &str| {
+            let nodes = self.healths.values().filter(|health| health.node.starts_with(kind));
+            let inputs = nodes.flat_map(|health| &health.inputs).filter(|input| input.key.ends_with(stream));
+            inputs.map(|input| input.received).sum()
+        };
+        let mesh = self.mesh.as_ref().map(TriangleMesh::from);
+        Counts {
+            frames: received("stripe/", "/frame"),
+            poses: received("register/", "/pose"),
+            points: self.points,
+            cloud_points: self.balls,
+            triangles: mesh.as_ref().map_or(0, |mesh| mesh.triangles.len() as u64),
+            texture_cells: self.model.as_ref().map_or(0, |m| m.texture.iter().filter(|t| t[3] == 255).count() as u64),
+            area_mm2: mesh.as_ref().map_or(0.0, |mesh| mesh.area() * 1e6),
+        }
+    }
+
+    /// What each node did.
+    pub fn stages(&self) -> Vec<Stage> {
+        self.healths.values().map(|health| self.stage(health)).collect()
+    }
+
+    fn stage(&self, health: &Health) -> Stage {
+        let milliseconds = |nanos: Option<i64>| nanos.map(|nanos| nanos as f64 * 1e-6);
+        let [p50, p99] = self.latency(&health.node);
+        let finished = self.finished.get(&health.node).copied();
+        let wall_s = self.seconds(self.began, finished).filter(|seconds| *seconds > 0.0);
+        Stage {
+            node: health.node.clone(),
+            received: health.inputs.iter().map(|input| input.received).sum(),
+            published: health.published,
+            rate_hz: wall_s.map(|seconds| health.published as f64 / seconds),
+            busy_s: health.busy_nanos as f64 * 1e-9,
+            cpu_s: health.cpu_nanos as f64 * 1e-9,
+            latency_p50_ms: milliseconds(p50),
+            latency_p99_ms: milliseconds(p99),
+            lost: health.inputs.iter().map(|input| input.lost).sum(),
+            refused: health.refused.iter().map(|r| Refused { reason: r.reason.clone(), count: r.count }).collect(),
+        }
+    }
+
+    /// The parts of the run, from one node's end to the next one's, and all of it until now.
+    pub fn times(&self, started: Instant) -> Vec<Time> {
+        let of = |kind: &str| self.finished.iter().find(|(node, _)| node.starts_with(kind)).map(|(_, at)| *at);
+        let sweep = of("cluster/");
+        let parts = [
+            ("start", Some(started), self.began),
+            ("sweep", self.began, sweep),
+            ("surface", sweep, of("surface/")),
+            ("colour", of("surface/"), of("paint/")),
+            ("files", of("paint/"), of("export/")),
+            ("all", Some(started), Some(Instant::now())),
+        ];
+        let time = |(what, from, to): &(&str, _, _)| {
+            Some(Time { what: (*what).to_owned(), seconds: self.seconds(*from, *to)? })
+        };
+        parts.iter().filter_map(time).collect()
+    }
+}

@@ -1,0 +1,50 @@
+//! What one scan brought.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+use wire::{Health, Mesh, Model, TrajectorySample};
+
+/// Gathered from the bus.
+#[derive(Default)]
+pub struct Harvest {
+    /// The last account of every node.
+    pub healths: BTreeMap<String, Health>,
+    /// The worst median and 99th percentile of each node's latency while the hand moved.
+    pub latencies: BTreeMap<String, [Vec<i64>; 2]>,
+    /// When each node (kind/instance) had finished.
+    pub finished: BTreeMap<String, Instant>,
+    /// When the first measurement came.
+    pub began: Option<Instant>,
+    /// Registered points.
+    pub points: u64,
+    /// Balls of the final cloud.
+    pub balls: u64,
+    /// The true way of the camera, when the world is known.
+    pub truth: Vec<TrajectorySample>,
+    /// The final surface.
+    pub mesh: Option<Mesh>,
+    /// The final model.
+    pub model: Option<Model>,
+}
+
+impl Harvest {
+    /// Messages lost on the whole way.
+    pub fn lost(&self) -> u64 {
+        self.healths.values().flat_map(|health| &health.inputs).map(|input| input.lost).sum()
+    }
+
+    /// The median over the scan of one node's latency percentiles (50th, 99th), in nanoseconds.
+    pub fn latency(&self, node: &str) -> [Option<i64>; 2] {
+        let median = |values: &Vec<i64>| {
+            let mut values = values.clone();
+            values.sort_unstable();
+            values.get(values.len() / 2).copied()
+        };
+        self.latencies.get(node).map_or([None; 2], |latencies| latencies.each_ref().map(median))
+    }
+
+    /// Seconds between two moments of the run; `None` unless both came.
+    pub fn seconds(&self, from: Option<Instant>, to: Option<Instant>) -> Option<f64> {
+        Some(to?.saturating_duration_since(from?).as_secs_f64())
+    }
+}

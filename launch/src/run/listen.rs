@@ -1,0 +1,100 @@
+//! Listens to a scan without taking part in it.
+
+use super::bars::Bars;
+use super::harvest::Harvest;
+use anyhow::Result;
+use bus::{Bus, BusConfig, Subscriber};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use wire::{Cloud, Health, Mesh, Model, Progress, Scan, Trajectory, topic};
+
+/// A thread that gathers until it is told to finish.
+pub struct Listener {
+    thread: JoinHandle<Harvest>,
+    finish: Arc<AtomicBool>,
+}
+
+struct Ears {
+    healths: Subscriber<Health>,
+    progress: Subscriber<Progress>,
+    scans: Subscriber<Scan>,
+    clouds: Subscriber<Cloud>,
+    meshes: Subscriber<Mesh>,
+    models: Subscriber<Model>,
+    truths: Subscriber<Trajectory>,
+}
+
+impl Listener {
+    /// Joins the bus. Nothing that comes later is missed.
+    pub fn start(config: &BusConfig, bars: Bars) -> Result<Self> {
+        let bus = Bus::open(config)?;
+        let mut ears = Ears {
+            healths: bus.subscribe(&topic::health("**"), 1024)?,
+            progress: bus.subscribe(&topic::progress("**"), 1 << 16)?,
+            scans: bus.subscribe(&topic::scan("*"), 1 << 14)?,
+            clouds: bus.subscribe(&topic::cloud(), 1 << 14)?,
+            meshes: bus.subscribe(&topic::mesh(), 4)?,
+            models: bus.subscribe(&topic::textured(), 4)?,
+            truths: bus.subscribe(&topic::truth_trajectory("*"), 64)?,
+        };
+        let finish = Arc::new(AtomicBool::new(false));
+        let finishing = finish.clone();
+        let thread = std::thread::spawn(move || {
+            let mut harvest = Harvest::default();
+            while !finishing.load(Ordering::SeqCst) {
+                bus.wait(Duration::from_millis(100));
+                ears.hear(&mut harvest, &bars);
+            }
+            ears.hear(&mut harvest, &bars);
+            harvest
+        });
+        Ok(Self { thread, finish })
+    }
+
+    /// What was gathered.
+    pub fn finish(self) -> Harvest {
+        self.finish.store(true, Ordering::SeqCst);
+        self.thread.join().unwrap_or_default()
+    }
+}
+
+impl Ears {
+    fn hear(&mut self, harvest: &mut Harvest, bars: &Bars) {
+        while let Some(scan) = self.scans.next() {
+            harvest.began.get_or_insert_with(Instant::now);
+            harvest.points += scan.points.len() as u64;
+        }
+        while let Some(progress) = self.progress.next() {
+            if progress.header.is_end() {
+                harvest.finished.entry(progress.node.clone()).or_insert_with(Instant::now);
+                bars.finished(&progress.node);
+            } else if progress.node.starts_with("register/") {
+                bars.swept(progress.header.stamp_nanos as f64 * 1e-9, harvest.points);
+            }
+        }
+        while let Some(cloud) = self.clouds.next() {
+            if cloud.header.is_end() {
+                harvest.balls = cloud.points.len() as u64;
+            }
+        }
+        while let Some(mesh) = self.meshes.next() {
+            harvest.mesh = Some(mesh).filter(|mesh| mesh.header.is_end()).or(harvest.mesh.take());
+        }
+        while let Some(model) = self.models.next() {
+            harvest.model = Some(model).filter(|model| model.header.is_end()).or(harvest.model.take());
+        }
+        while let Some(truth) = self.truths.next() {
+            harvest.truth.extend_from_slice(&truth.samples);
+        }
+        while let Some(health) = self.healths.next() {
+            if health.latency_p99_nanos > 0 {
+                let [p50, p99] = harvest.latencies.entry(health.node.clone()).or_default();
+                p50.push(health.latency_p50_nanos);
+                p99.push(health.latency_p99_nanos);
+            }
+            harvest.healths.insert(health.node.clone(), health);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The wiring: lamp-lit frames are kept until the surface is final, and then painted onto it.
+
+use crate::{Config, FrameStore, Painter};
+use geometry::TrajectoryBuffer;
+use kit::{Input, Node};
+use std::time::Instant;
+use wire::{Frame, Header, Mesh, Model, Phase, Trajectory, topic};
+
+const FRAMES: usize = 32;
+const TRAJECTORIES: usize = 1 << 14;
+/// Between two samples of the way, a frame's place is taken from them when they are no further apart.
+const GAP_NANOS: i64 = 100_000_000;
+
+/// What has come of one scan.
+struct Scan {
+    header: Header,
+    store: FrameStore,
+    way: TrajectoryBuffer,
+    mesh: Option<Mesh>,
+    frames_ended: bool,
+    way_ended: bool,
+}
+
+impl Scan {
+    fn new(header: Header, bound_bytes: usize) -> Self {
+        let (store, way) = (FrameStore::new(bound_bytes), TrajectoryBuffer::default());
+        Self { header, store, way, mesh: None, frames_ended: false, way_ended: false }
+    }
+}
+
+struct Inputs {
+    frames: Input<Frame>,
+    way: Input<Trajectory>,
+    meshes: Input<Mesh>,
+}
+
+/// Paints the surface of every scan until it is told to stop.
+pub fn run(mut node: Node) -> anyhow::Result<()> {
+    let config: Config = node.spec().config()?;
+    config.check()?;
+    let bound_bytes = config.memory_mib << 20;
+    let camera = node.spec().source_of("camera").to_owned();
+    let mut inputs = Inputs {
+        frames: node.stream(&topic::frame(&camera), FRAMES)?,
+        way: node.stream(&topic::trajectory(&camera), TRAJECTORIES)?,
+        meshes: node.input(&topic::mesh(), 4)?,
+    };
+    let mut models = node.output(&topic::textured())?;
+    let rig = node.spec().source_of("rig").to_owned();
+    let calibration = node.calibration(&rig)?;
+    let mut painter = Painter::new(config, &calibration)?;
+    node.ready()?;
+    let mut scan = Scan::new(Header::default(), bound_bytes);
+    while node.wait() {
+        take(&mut node, &mut inputs, &mut painter, &mut scan, bound_bytes)?;
+        let is_final = scan.mesh.as_ref().is_some_and(|mesh| mesh.header.is_end());
+        if is_final && scan.frames_ended && scan.way_ended {
+            let model = paint(&mut node, &mut painter, &scan)?;
+            let header = Header { phase: Phase::End, ..scan.header };
+            models.send(Model { header, ..model })?;
+            node.finished(&header)?;
+            scan = Scan::new(Header { scan: scan.header.scan, ..Header::default() }, bound_bytes);
+        }
+    }
+    node.close()
+}
+
+/// Takes what has come; a new scan starts afresh.
+fn take(
+    node: &mut Node,
+    inputs: &mut Inputs,
+    painter: &mut Painter,
+    scan: &mut Scan,
+    bound_bytes: usize,
+) -> anyhow::Result<()> {
+    while let Some(trajectory) = inputs.way.next() {
+        renew(scan, &trajectory.header, bound_bytes);
+        trajectory.samples.iter().for_each(|sample| {
+            scan.way.push(sample.into());
+        });
+        scan.way_ended |= trajectory.header.is_end();
+    }
+    while let Some(frame) = inputs.frames.next() {
+        renew(scan, &frame.header, bound_bytes);
+        scan.header = Header { stamp_nanos: frame.header.stamp_nanos, ..scan.header };
+        if frame.header.is_end() {
+            scan.frames_ended = true;
+            continue;
+        }
+        if frame.light.lamp && !frame.light.laser && frame.header.phase != Phase::Aim {
+            match painter.crop(&frame) {
+                Ok(picture) => scan.store.push(picture),
+                Err(refusal) => node.refuse(&refusal.to_string(), 1),
+            }
+        }
+        node.finished(&frame.header)?;
+    }
+    while let Some(mesh) = inputs.meshes.next() {
+        renew(scan, &mesh.header, bound_bytes);
+        scan.mesh = Some(mesh);
+    }
+    Ok(())
+}
+
+fn renew(scan: &mut Scan, header: &Header, bound_bytes: usize) {
+    if header.scan > scan.header.scan {
+        *scan = Scan::new(Header { phase: Phase::Aim, ..header.derived() }, bound_bytes);
+    }
+}
+
+/// Paints every kept picture onto the final surface.
+fn paint(node: &mut Node, painter: &mut Painter, scan: &Scan) -> anyhow::Result<Model> {
+    let started = Instant::now();
+    let Some(mesh) = &scan.mesh else { anyhow::bail!("painting without a surface") };
+    if let Err(error) = painter.mesh(mesh) {
+        tracing::error!("the surface cannot be painted: {error}");
+        node.refuse("surface that cannot be painted", 1);
+    }
+    for picture in scan.store.pictures() {
+        match scan.way.at(picture.header.stamp_nanos, GAP_NANOS) {
+            Ok(place) => {
+                if let Err(refusal) = painter.picture(picture, &place.pose) {
+                    node.refuse(&refusal.to_string(), 1);
+                }
+            }
+            Err(reason) => node.refuse(&format!("picture {reason}"), 1),
+        }
+    }
+    let (model, evidence) = painter.model();
+    tracing::info!(
+        "{} pictures in {:.2?}: {} cells seen, {} filled in, {} grey",
+        evidence.pictures,
+        started.elapsed(),
+        evidence.seen,
+        evidence.filled,
+        evidence.grey
+    );
+    Ok(model)
+}

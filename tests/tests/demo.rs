@@ -1,0 +1,87 @@
+//! The demo as a user runs it, on a short sweep: what comes out, and that the same comes out again.
+
+use std::path::Path;
+use system_tests::{limn, report, succeed};
+
+fn number(report: &serde_json::Value, path: &str) -> f64 {
+    report.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{path} is not in {report:#}"))
+}
+
+fn lost(report: &serde_json::Value) -> f64 {
+    report["stages"].as_array().unwrap().iter().map(|stage| number(stage, "/lost")).sum()
+}
+
+fn same_bytes(a: &Path, b: &Path, file: &str) {
+    let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
+    assert!(read(a) == read(b), "{file} differs between {} and {}", a.display(), b.display());
+}
+
+#[test]
+fn a_short_sweep_gives_an_exact_coloured_model_and_its_recording_gives_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let [live, again, once_more] = ["live", "again", "once_more"].map(|name| folder.path().join(name));
+    succeed(limn().args(["demo", "--headless", "--seconds", "12", "--out"]).arg(&live));
+    let told = report(&live);
+    for file in [
+        "truth.ply",
+        "cloud.ply",
+        "mesh.ply",
+        "mesh.stl",
+        "model.glb",
+        "model.obj",
+        "model.mtl",
+        "model.png",
+        "scan.mcap",
+        "report.html",
+        "config.toml",
+        "log.txt",
+    ] {
+        assert!(live.join(file).metadata().is_ok_and(|file| file.len() > 0), "{file} is missing or empty");
+    }
+    assert_eq!(lost(&told), 0.0);
+    assert!(number(&told, "/counts/points") > 100_000.0);
+    assert!(number(&told, "/comparison/model_to_truth/rms_mm") < 0.25);
+    assert!(number(&told, "/comparison/model_to_truth/p95_mm") < 0.6);
+    assert!(number(&told, "/colour/rms_255") < 16.0);
+
+    let table = "cluster.table=remove";
+    let paint = ["--set", "paint.cell_mm=0.25", "--set", "paint.lamp_from_camera_m=[0.025, -0.015, 0.0]"];
+    for out in [&again, &once_more] {
+        let recording = live.join("scan.mcap");
+        let mut model = limn();
+        model.arg("model").arg(recording).arg("-o").arg(out).args([
+            "--set",
+            table,
+            "--set",
+            "surface.fill_holes_mm=30.0",
+        ]);
+        succeed(model.args(paint));
+        assert_eq!(lost(&report(out)), 0.0);
+    }
+    for file in ["cloud.ply", "mesh.ply", "mesh.stl", "model.glb", "model.obj", "model.png"] {
+        same_bytes(&again, &once_more, file);
+        same_bytes(&live, &again, file);
+    }
+}
+
+#[test]
+fn what_cannot_be_scanned_is_said_before_anything_is_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let points_only = folder.path().join("points.obj");
+    std::fs::write(&points_only, "v 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap();
+    let broken_rig = folder.path().join("rig.toml");
+    std::fs::write(&broken_rig, "[camera]\nwidth = 0\n").unwrap();
+    let cases: [(&str, &Path, &str); 4] = [
+        ("--object", Path::new("/no/such/cow.obj"), "/no/such/cow.obj"),
+        ("--object", &points_only, "faces"),
+        ("--rig", &broken_rig, "rig.toml"),
+        ("--scene", Path::new("/no/such/scene.toml"), "/no/such/scene.toml"),
+    ];
+    for (option, path, named) in cases {
+        let out = folder.path().join("out");
+        let output = limn().args(["demo", "--headless", option]).arg(path).arg("--out").arg(out).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && said.contains(named), "{option} {}: {said}", path.display());
+        assert!(!said.contains("panicked"), "{said}");
+    }
+}
