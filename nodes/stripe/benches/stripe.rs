@@ -11,8 +11,8 @@ use std::hint::black_box;
 use stripe::{Config, StripeDetector};
 use wire::{Frame, PeaksPer, PixelFormat};
 
-/// Several pictures in turn, so that none stays in the first caches: 16 of 4 MB.
-const FRAMES: u64 = 16;
+/// Several pictures in turn, so that none stays in the first caches: 8 of 4 MB.
+const FRAMES: u64 = 8;
 
 fn frames_per_second(c: &mut Criterion) {
     let mut group = c.benchmark_group("stripe 1280x1024");

@@ -20,7 +20,8 @@ pub struct Config {
     pub saturation_level: u8,
     /// In each row or column the largest are kept.
     pub max_peaks_per_line: usize,
-    /// Amplitudes that differ by less than this fraction of the largest are a tie, and the first of them is the best.
+    /// Amplitudes that differ by less than this fraction of the largest are a tie (as are all that are clipped), and the
+    /// first of them is the best.
     pub tie_fraction: f32,
     /// A position is averaged with as many neighbours along the stripe on either side; 0 averages nothing.
     pub lateral_lines: usize,
@@ -37,7 +38,7 @@ impl Default for Config {
             min_noise_ratio: 5.0,
             noise_floor: 0.5,
             min_width_px: 0.4,
-            max_width_px: 10.0,
+            max_width_px: 16.0,
             saturation_level: 252,
             max_peaks_per_line: 8,
             tie_fraction: 0.05,

@@ -12,6 +12,9 @@ use wire::{Frame, FrameError, LaserPlane, PeaksPer, Stripe, StripePeak};
 /// Around a stretch that stands out; enough for lines up to about 2 px wide, wider ones are read again.
 const REACH_PX: usize = 14;
 
+/// No position is known better: the pixels of a sensor are not more even, nor is a line more like a Gaussian.
+const EVENNESS_PX: f32 = 0.01;
+
 /// Finds the laser line in pictures of one rig. It keeps its buffers: in the long run nothing is allocated but the result.
 #[derive(Debug)]
 pub struct StripeDetector {
@@ -56,6 +59,12 @@ impl StripeDetector {
             self.find(frame, &mut refusals);
             let Config { lateral_lines: lines, link_px, speckle_contrast: contrast, .. } = self.config;
             self.lateral.average(&mut self.peaks, Averaging { lines, link_px, contrast });
+            // Averages of neighbours that are hardly apart may have changed places.
+            let place = |p: &LinePeak| (p.line, p.peak.position);
+            self.peaks.sort_unstable_by(|a, b| {
+                let ((a, x), (b, y)) = (place(a), place(b));
+                a.cmp(&b).then(x.total_cmp(&y))
+            });
         }
         Ok(Stripe {
             header: frame.header.derived(),
@@ -111,9 +120,15 @@ impl StripeDetector {
             refusals.count(Reason::Crowded);
         }
         let peaks = &mut self.peaks[start..];
-        let largest = peaks.iter().map(|p| p.peak.amplitude).fold(0.0, f32::max);
-        let enough = (1.0 - self.config.tie_fraction) * largest;
-        if let Some(best) = peaks.iter_mut().find(|p| p.peak.amplitude >= enough) {
+        let Some(LinePeak { peak: largest, .. }) =
+            peaks.iter().copied().max_by(|a, b| a.peak.amplitude.total_cmp(&b.peak.amplitude))
+        else {
+            return;
+        };
+        let enough = (1.0 - self.config.tie_fraction) * largest.amplitude;
+        // How high a clipped peak really is, nobody knows.
+        let ties = |peak: &Peak| peak.amplitude >= enough || (peak.clipped && largest.clipped);
+        if let Some(best) = peaks.iter_mut().find(|p| ties(&p.peak)) {
             best.best = true;
         }
     }
@@ -145,7 +160,7 @@ impl StripeDetector {
         StripePeak {
             u_px,
             v_px,
-            sigma_px: peak.noise_variance.sqrt(),
+            sigma_px: peak.noise_variance.sqrt().hypot(EVENNESS_PX),
             amplitude: peak.amplitude,
             width_px: peak.width,
             flags: best | clipped,

@@ -9,12 +9,14 @@ use crate::flanks::Flanks;
 use crate::measure::Peak;
 use crate::refusal::Reason;
 use crate::window::{Background, Window};
-use std::f32::consts::{PI, SQRT_2};
+use std::f32::consts::{PI, TAU};
 
 /// Beyond so many standard deviations the line adds nothing to the fit.
 const FIT_SIGMAS: f32 = 3.0;
 /// Between the fit and the background.
 pub(crate) const CLEAR_PX: f32 = 1.5;
+/// A narrower weight would see too few pixels for its moments to be those of a Gaussian.
+const LEAST_WEIGHT_PX: f32 = 1.2;
 const ITERATIONS: usize = 4;
 /// After a step so short the next would be a tenth of it, far below any sigma.
 const STEP_PX: f32 = 1e-2;
@@ -22,11 +24,12 @@ const STEP_PX: f32 = 1e-2;
 /// A line that is not clipped. `Ok(None)` when the window ends before the background.
 pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Config) -> Result<Option<Peak>, Reason> {
     let start = flanks.middle();
-    let (mut x, mut w) = (start, flanks.width().max(config.min_width_px));
+    let (mut x, mut line) = (start, flanks.width().max(config.min_width_px));
     let mut last = None;
     for _ in 0..ITERATIONS {
-        let Some(background) = window.background(x, FIT_SIGMAS * w + CLEAR_PX) else { return Ok(None) };
-        let [sum, first, second] = weighted_moments(window, x, w, &background);
+        let weight = line.max(LEAST_WEIGHT_PX);
+        let Some(background) = window.background(x, FIT_SIGMAS * weight + CLEAR_PX) else { return Ok(None) };
+        let [sum, first, second] = weighted_moments(window, x, weight, &background);
         let (mean, spread) = (first / sum, second / sum - (first / sum).powi(2));
         if !(sum > 0.0 && spread.is_finite()) {
             return Err(Reason::Shapeless);
@@ -34,31 +37,34 @@ pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Co
         if spread <= 0.0 {
             return Err(Reason::Narrow);
         }
-        let amplitude = sum / (w * PI.sqrt());
-        last = Some((amplitude, background));
         // The product of line and weight has 1/spread = 1/line^2 + 1/weight^2, and its mean is the line's, shrunk alike.
-        let line = 1.0 / (1.0 / spread - 1.0 / (w * w)).max(0.4 / (w * w));
-        let step = mean * (line + w * w) / (w * w);
+        let square = 1.0 / (1.0 / spread - 1.0 / weight.powi(2)).max(0.4 / weight.powi(2));
+        let step = mean * (square + weight.powi(2)) / weight.powi(2);
         x += step;
-        w = line.sqrt().clamp(0.6 * w, 1.5 * w);
-        if (x - start).abs() > w + 1.0 {
+        line = square.sqrt().clamp(0.6 * line, 1.5 * line);
+        last = Some((sum, weight, background));
+        if (x - start).abs() > line + 1.0 {
             return Err(Reason::Shapeless);
         }
-        if step.abs() < STEP_PX || w > 1.5 * config.max_width_px {
+        if step.abs() < STEP_PX || line > 1.5 * config.max_width_px {
             break;
         }
     }
-    let Some((amplitude, background)) = last else { return Ok(None) };
-    let pixel = 2.0 * w / (PI.sqrt() * amplitude * amplitude);
-    let slope = (2.0 * SQRT_2 * w * w / amplitude).powi(2) * background.slope_variance;
-    Ok(Some(Peak {
-        position: x,
-        amplitude,
-        width: w,
-        noise_variance: sigma * sigma * (pixel + slope),
-        speckle_variance: w / (2.0 * PI).sqrt(),
-        clipped: false,
-        ends: flanks.right,
+    Ok(last.map(|(sum, weight, background)| {
+        let both = line * line + weight * weight;
+        let amplitude = sum * (both / TAU).sqrt() / (line * weight);
+        // All from x = sum y t g / sum y g, times both / weight^2; with equal widths the first is 2 w / (sqrt(pi) A^2).
+        let pixel = both.powi(3) / (4.0 * PI.sqrt() * amplitude.powi(2) * line.powi(2) * weight.powi(3));
+        let slope = both.powi(3) / (amplitude * line).powi(2) * background.slope_variance;
+        Peak {
+            position: x,
+            amplitude,
+            width: line,
+            noise_variance: sigma * sigma * (pixel + slope),
+            speckle_variance: line * both.powf(1.5) / (4.0 * PI.sqrt() * weight.powi(3)),
+            clipped: false,
+            ends: flanks.right.max(x),
+        }
     }))
 }
 

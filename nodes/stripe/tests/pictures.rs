@@ -110,7 +110,9 @@ fn of_a_tie_the_first_is_best() {
 
 #[test]
 fn two_clipped_lines_tie_at_full_scale() {
-    let stripe = detect(&rows(300, 10, |u| 15.0 + line(u, 100.0, 3.0, 400.0) + line(u, 200.0, 3.0, 900.0)));
+    // The first has a bright surrounding and less height above it.
+    let glow = |u: f64| line(u, 100.0, 40.0, 90.0);
+    let stripe = detect(&rows(300, 10, |u| 15.0 + glow(u) + line(u, 100.0, 3.0, 400.0) + line(u, 200.0, 3.0, 900.0)));
     let best: Vec<_> = stripe.peaks.iter().filter(|p| p.is_best()).collect();
     assert!(best.len() == 10 && best.iter().all(|p| (p.u_px - 100.0).abs() < 0.05));
     assert!(stripe.peaks.iter().all(|p| p.flags & StripePeak::SATURATED != 0));
@@ -131,7 +133,7 @@ fn a_bloomed_core_is_one_line_in_the_laser_channel() {
 
 #[test]
 fn lit_areas_steps_and_hot_pixels_are_no_lines() {
-    let wide = detect(&rows(300, 10, |u| if (100.0..126.0).contains(&u) { 255.0 } else { 10.0 }));
+    let wide = detect(&rows(300, 10, |u| if (100.0..142.0).contains(&u) { 255.0 } else { 10.0 }));
     assert!(wide.peaks.is_empty() && reasons(&wide) == ["peak wider than a laser line"]);
     let step = detect(&rows(300, 10, |u| if u < 150.0 { 20.0 } else { 200.0 }));
     assert!(step.peaks.is_empty() && step.refused.is_empty());
@@ -145,6 +147,19 @@ fn lit_areas_steps_and_hot_pixels_are_no_lines() {
     assert!(hot.peaks.is_empty() && reasons(&hot) == ["peak narrower than a laser line"]);
     let cut = detect(&rows(300, 10, |u| 10.0 + line(u, 1.0, 2.0, 100.0)));
     assert!(cut.peaks.is_empty(), "{cut:?}");
+}
+
+#[test]
+fn a_line_hardly_wider_than_a_pixel_is_found_at_any_phase() {
+    for phase in 0..10 {
+        let centre = 100.0 + 0.1 * f64::from(phase);
+        // Averaged over each pixel, in tenths of it.
+        let level = |u: f64| (0..10).map(|i| line(u + 0.1 * f64::from(i) - 0.45, centre, 0.5, 15.0)).sum::<f64>();
+        let stripe = detect(&rows(200, 120, |u| 20.0 + level(u)));
+        assert_eq!(stripe.peaks.len(), 120, "{:?}", stripe.refused);
+        let off = f64::from(stripe.peaks[60].u_px) - centre;
+        assert!(off.abs() < 0.02, "{off} px off at {centre}, {:?}", stripe.peaks[60]);
+    }
 }
 
 #[test]
