@@ -1,5 +1,7 @@
 //! Points a second of triangulation, one core.
 
+#![allow(clippy::unwrap_used, reason = "a bench may stop")]
+
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use triangulate::{Config, Triangulator};

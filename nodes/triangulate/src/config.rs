@@ -58,7 +58,7 @@ impl Config {
         if !(0.1..90.0).contains(&self.least_angle_deg) {
             return refuse("least_angle_deg", self.least_angle_deg, "0.1 to 90 degrees");
         }
-        if !(self.most_range_sigma_mm > 0.0) {
+        if self.most_range_sigma_mm.is_nan() || self.most_range_sigma_mm <= 0.0 {
             return refuse("most_range_sigma_mm", self.most_range_sigma_mm, "more than 0");
         }
         Ok(())

@@ -11,8 +11,8 @@
 //! Near a ray that runs along the sheet this grows without bound; such peaks are refused by angle. The laser plane's own
 //! error is not part of the sigma: it is the same for all points and shows in no scatter.
 //!
-//! Directions come from a table over the picture with bilinear interpolation ([`directions`]), good to a thousandth of a
-//! pixel for any lens that [`geometry::Camera::check`] admits; Newton on every peak would cost ten times as much.
+//! Directions come from a table over the picture with bilinear interpolation ([`directions`]), as fine as the lens needs
+//! for a thousandth of a pixel; Newton on every peak would cost ten times as much.
 //!
 //! ```
 //! use triangulate::{Config, Triangulator};

@@ -31,9 +31,10 @@ enum Refused {
     Near,
     Far,
     Uncertain,
+    OtherPicture,
 }
 
-const REASONS: [(Refused, &str); 8] = [
+const REASONS: [(Refused, &str); 9] = [
     (Refused::NotFinite, "peak that is not finite"),
     (Refused::OffThePicture, "peak off the picture"),
     (Refused::Saturated, "saturated peak"),
@@ -42,12 +43,14 @@ const REASONS: [(Refused, &str); 8] = [
     (Refused::Near, "point too near"),
     (Refused::Far, "point too far"),
     (Refused::Uncertain, "point too uncertain"),
+    (Refused::OtherPicture, "peak in a picture of another size than the calibration's"),
 ];
 
 /// Turns stripes into profiles.
 #[derive(Debug, Clone)]
 pub struct Triangulator {
     directions: Directions,
+    size: [u32; 2],
     normal: Vector3<f32>,
     distance_m: f32,
     peaks_per: PeaksPer,
@@ -69,6 +72,7 @@ impl Triangulator {
         let sheet = LaserSheet::new(Vector3::from(calibration.laser.normal), calibration.laser.distance_m)?;
         Ok(Self {
             directions: Directions::new(&camera),
+            size: [camera.width, camera.height],
             normal: sheet.normal.cast(),
             distance_m: sheet.distance_m as f32,
             peaks_per: calibration.laser.peaks_per,
@@ -86,9 +90,10 @@ impl Triangulator {
     /// them); whatever else gives no point is counted.
     pub fn process(&mut self, stripe: &Stripe) -> Profile {
         self.refused = [0; REASONS.len()];
+        let calibrated = [stripe.width, stripe.height] == self.size;
         let mut points = Vec::with_capacity(stripe.peaks.len());
         for peak in stripe.peaks.iter().filter(|peak| peak.is_best() || !self.best_only) {
-            match self.point(peak) {
+            match if calibrated { self.point(peak) } else { Err(Refused::OtherPicture) } {
                 Ok(point) => points.push(point),
                 Err(reason) => self.refused[reason as usize] += 1,
             }

@@ -1,8 +1,11 @@
 //! Points against the geometry that they come from.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use geometry::{Camera, LaserSheet};
 use nalgebra::{Point2, Point3, Vector3};
 use proptest::prelude::*;
+use std::sync::LazyLock;
 use triangulate::{Config, Triangulator, directions::Directions};
 use wire::*;
 
@@ -60,14 +63,27 @@ fn points_on_the_sheet() -> Vec<Point3<f64>> {
 
 #[test]
 fn the_table_is_good_to_a_thousandth_of_a_pixel() {
-    let (camera, directions) = (camera(), Directions::new(&camera()));
-    for i in 0..2000 {
-        let pixel = Point2::new(1279.0 * f64::from(i * 37 % 2000) / 2000.0, 1023.0 * f64::from(i) / 2000.0);
-        let direction = directions.at(pixel.x as f32, pixel.y as f32).unwrap();
-        let exact = camera.direction(pixel);
-        let off_px = (f64::from(direction.xy[0]) - exact.x).hypot(f64::from(direction.xy[1]) - exact.y) * camera.fx;
-        assert!(off_px < 1e-3, "{off_px} px at {pixel}");
+    // A straight lens, a usual one, a strong barrel and a pincushion.
+    for distortion in [[0.0; 5], camera().distortion, [-0.3, 0.12, 0.001, -0.001, -0.01], [0.25, 0.1, 0.0, 0.0, 0.0]] {
+        let camera = Camera { fx: 900.0, fy: 905.0, distortion, ..camera() };
+        camera.check().unwrap();
+        let directions = Directions::new(&camera);
+        for i in 0..2000 {
+            let pixel = Point2::new(1279.0 * f64::from(i * 37 % 2000) / 2000.0, 1023.0 * f64::from(i) / 2000.0);
+            let direction = directions.at(pixel.x as f32, pixel.y as f32).unwrap();
+            let exact = camera.direction(pixel);
+            let off_px = (f64::from(direction.xy[0]) - exact.x).hypot(f64::from(direction.xy[1]) - exact.y) * camera.fx;
+            assert!(off_px < 1e-3, "{off_px} px at {pixel} with {distortion:?}");
+        }
     }
+}
+
+#[test]
+fn a_stripe_of_another_picture_gives_no_points() {
+    let mut triangulator = Triangulator::new(Config::default(), &calibration()).unwrap();
+    let other = Stripe { width: 640, ..stripe(vec![peak(Point2::new(600.0, 500.0))]) };
+    let profile = triangulator.process(&other);
+    assert!(profile.points.is_empty() && profile.refused[0].reason.contains("another size"));
 }
 
 #[test]
@@ -121,10 +137,13 @@ fn impossible_settings_are_refused_by_name() {
     assert!(refusal.contains("far_mm = 10"), "{refusal}");
 }
 
+static ALL_PEAKS: LazyLock<Triangulator> =
+    LazyLock::new(|| Triangulator::new(Config { best_only: false, ..Config::default() }, &calibration()).unwrap());
+
 proptest! {
     #[test]
     fn any_peak_gives_a_finite_point_or_a_reason(u: f32, v: f32, sigma: f32, amplitude: f32, flags: u32) {
-        let mut triangulator = Triangulator::new(Config { best_only: false, ..Config::default() }, &calibration()).unwrap();
+        let mut triangulator = ALL_PEAKS.clone();
         let hostile = StripePeak { u_px: u, v_px: v, sigma_px: sigma, amplitude, width_px: 1.0, flags };
         let profile = triangulator.process(&stripe(vec![hostile]));
         prop_assert_eq!(profile.points.len() as u64 + profile.refused.iter().map(|r| r.count).sum::<u64>(), 1);
