@@ -2,7 +2,8 @@
 
 use crate::operator::Order;
 use crate::{
-    cluster_cmd, compare_cmd, demo, echo, hz, live, model_cmd, record_cmd, replay_cmd, scan, stripe_cmd, surface_cmd, top, topics, up,
+    cluster_cmd, compare_cmd, demo, echo, hz, live, model_cmd, record_cmd, replay_cmd, scan, stripe_cmd, surface_cmd,
+    top, topics, up,
 };
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};

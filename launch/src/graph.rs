@@ -111,7 +111,7 @@ pub fn in_flow_order(nodes: &[PlannedNode]) -> Vec<&PlannedNode> {
     let mut ordered = Vec::new();
     while !waiting.is_empty() {
         let free = |node: &&PlannedNode| !waiting.iter().any(|feeder| feeds(feeder, node));
-        let next = waiting.iter().position(|node| free(node)).or(waiting.iter().position(|node| node.source));
+        let next = waiting.iter().position(free).or(waiting.iter().position(|node| node.source));
         ordered.push(waiting.remove(next.unwrap_or(0)));
     }
     ordered

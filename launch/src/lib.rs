@@ -57,6 +57,7 @@ pub mod set;
 pub mod setting;
 mod spec;
 pub mod stop;
+pub mod story;
 mod stripe_cmd;
 mod supervise;
 mod surface_cmd;

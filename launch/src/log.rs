@@ -65,8 +65,8 @@ pub fn parse(node: &str, written: &str) -> Line {
 /// Hands on the lines of a node's output until it closes.
 pub(crate) async fn follow(node: &str, mut output: impl AsyncBufRead + Unpin, each: impl Fn(Line)) {
     let mut held = Vec::new();
-    loop {
-        let Ok(more) = output.fill_buf().await else { break };
+    // A line that breaks ends the log of this process; its end is told by others.
+    while let Ok(more) = output.fill_buf().await {
         if more.is_empty() {
             break;
         }

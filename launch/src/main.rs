@@ -7,7 +7,7 @@ fn main() -> ExitCode {
     match limn::cli::run(limn::cli::Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            tracing::error!("{error:#}");
+            tracing::error!("{}", limn::story::story(&error));
             ExitCode::FAILURE
         }
     }

@@ -3,6 +3,7 @@
 use crate::kind::Kind;
 use crate::nearest::nearest;
 use crate::nodes::{self, KINDS};
+use crate::story::story;
 use anyhow::{Context as _, Result, bail};
 use kit::{Node, NodeSpec};
 
@@ -16,7 +17,7 @@ pub fn run(kind: &str, instance: &str) -> Result<()> {
     };
     let outcome = live(found, instance);
     if let Err(error) = &outcome {
-        eprintln!("ERROR {error:#}");
+        eprintln!("ERROR {}", story(error));
     }
     outcome
 }

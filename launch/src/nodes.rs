@@ -188,7 +188,11 @@ pub const KINDS: &[Kind] = &[
 ];
 
 fn replay_file(config: &replay::node::Config) -> Result<(), &'static str> {
-    if config.file.as_os_str().is_empty() { Err("file = \"\": name a recording (MCAP) or a scan folder") } else { Ok(()) }
+    if config.file.as_os_str().is_empty() {
+        Err("file = \"\": name a recording (MCAP) or a scan folder")
+    } else {
+        Ok(())
+    }
 }
 
 /// The kind of a name.

@@ -6,6 +6,7 @@ use crate::log::{Line, Sink};
 use crate::planned::Restart;
 use crate::process::{Process, Start};
 use crate::stop::Rung;
+use crate::story::story;
 use anyhow::Result;
 use std::time::Instant;
 use tokio::sync::watch;
@@ -26,7 +27,7 @@ impl Supervisor {
         let mut backoff = Backoff::default();
         loop {
             let Err(reason) = self.live().await else { return self.tell(|node| Event::Ended { node }) };
-            let reason = format!("{reason:#}");
+            let reason = story(&reason);
             if *self.rung.borrow() > Rung::Finish {
                 // Told to stop, it stopped; that it did so by a signal is the ladder's affair.
                 return self.tell(|node| Event::Ended { node });

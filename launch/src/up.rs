@@ -9,6 +9,7 @@ use crate::operator::Order;
 use crate::plan::Plan;
 use crate::running;
 use crate::stop::Rung;
+use crate::story::story;
 use anyhow::{Context as _, Result};
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{broadcast, mpsc};
@@ -62,10 +63,12 @@ pub async fn up(plan: Plan, machine: Option<String>) -> Result<()> {
     let (restore, orders) = keys.map_or((None, None), |(restore, orders)| (Some(restore), Some(orders)));
     let outcome = watch(&launcher, &mut interrupts, orders, &say).await;
     if let Err(error) = &outcome {
-        say(LogLevel::Error, format!("{error:#}; stopping"));
+        say(LogLevel::Error, format!("{}; stopping", story(error)));
     }
     let rung = stop(&mut launcher, &mut interrupts).await;
-    say(LogLevel::Debug, format!("the last node went at {rung:?}"));
+    if rung > Rung::Close {
+        say(LogLevel::Warn, format!("a node did not stop when its standard input closed: {rung:?} was needed"));
+    }
     drop((restore, announced));
     outcome.and(launcher.check())
 }

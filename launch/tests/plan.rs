@@ -1,5 +1,7 @@
 //! Launch files: what they say, where they say it, and what is refused.
 
+#![allow(clippy::unwrap_used, reason = "a helper that cannot go on has failed its test")]
+
 use limn::kind::{Inputs, Kind};
 use limn::plan::Plan;
 use serde::{Deserialize, Serialize};
@@ -39,7 +41,7 @@ const EYE: Kind = Kind {
     paces: false,
     required: true,
     inputs: &[],
-    paths: &["scene"],
+    paths: &["scene", "rig"],
     takes: |_| vec!["run/phase".to_owned()],
     gives: |inputs: &Inputs| vec![format!("camera/{}/frame", inputs.instance)],
     defaults: limn::kind::defaults::<Config>,
@@ -85,7 +87,7 @@ impl Files {
 }
 
 fn refusal(text: &str, sets: &[&str]) -> String {
-    Files::new(&[("rig.toml", text)]).load(sets).err().expect("refused")
+    Files::new(&[("rig.toml", text)]).load(sets).expect_err("refused")
 }
 
 const EYE_AND_BRAIN: &str = "[nodes.eye]\n[nodes.brain]\n";

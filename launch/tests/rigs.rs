@@ -1,5 +1,7 @@
 //! Rigs of real processes on a real bus: started, watched, started again, and stopped whatever they do.
 
+#![allow(clippy::unwrap_used, reason = "a helper that cannot go on has failed its test")]
+
 use limn::board::{Event, Process};
 use limn::launcher::{Launcher, Options};
 use limn::log::Line;
@@ -164,7 +166,8 @@ async fn a_launcher_that_is_dropped_takes_its_nodes_along() {
 async fn a_port_in_use_is_named() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let endpoint = taken.local_addr().unwrap();
-    let error = start(&format!("[bus]\nendpoint = '{endpoint}'\n[nodes.one]\nEXEC\n")).await.err().expect("refused");
+    let refused = start(&format!("[bus]\nendpoint = '{endpoint}'\n[nodes.one]\nEXEC\n")).await;
+    let Err(error) = refused else { panic!("two listen on {endpoint}") };
     assert!(format!("{error:#}").contains(&format!("is {endpoint} in use already?")), "{error:#}");
 }
 

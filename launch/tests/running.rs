@@ -1,5 +1,7 @@
 //! The rigs that are up.
 
+#![allow(clippy::unwrap_used, reason = "a helper that cannot go on has failed its test")]
+
 use bus::BusConfig;
 use limn::running::{Running, all, announce, find};
 
