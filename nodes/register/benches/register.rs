@@ -1,56 +1,44 @@
-//! Points a second of registration, one core.
+//! Points a second on one core, from peaks in the picture to points in the world: triangulate and register together.
+
+#![allow(clippy::unwrap_used, reason = "a bench may stop")]
+
+#[path = "../tests/handset/mod.rs"]
+mod handset;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use handset::{FRAME_NANOS, POSE_NANOS, calibration, pose};
 use register::{Config, Register};
 use std::hint::black_box;
-use wire::*;
+use triangulate::Triangulator;
+use wire::{Bulk, StripePeak};
 
-const POINTS: u32 = 1000;
+/// One in each row of a 1024-row picture, as the fine rig has it.
+const PEAKS: u64 = 1024;
 
-fn bench(c: &mut Criterion) {
-    let camera =
-        CameraIntrinsics { width: 640, height: 480, fx: 800.0, fy: 800.0, cx: 320.0, cy: 240.0, distortion: [0.0; 5] };
-    let laser =
-        LaserPlane { normal: [-0.8, 0.0, 0.6], distance_m: 0.1, channel_weights: [1.0; 3], peaks_per: PeaksPer::Row };
-    let calibration = Calibration {
-        header: Header::default(),
-        camera,
-        laser,
-        body_from_camera: RigidPose::IDENTITY,
-        pose_offset_nanos: 0,
-        name: String::new(),
-    };
-    let header = |stamp_nanos| Header { stamp_nanos, phase: Phase::Shape, ..Header::default() };
-    let pose = |stamp| Pose {
-        header: header(stamp),
-        world_from_body: RigidPose::IDENTITY,
-        position_sigma_m: [1e-3; 3],
-        rotation_sigma_rad: [1e-2; 3],
-        rotation_lag_nanos: 0,
-        quality: Quality::Good,
-        reason: String::new(),
-    };
-    let point = |i: u32| ProfilePoint {
-        position_m: [0.0001 * i as f32, -0.02, 0.2],
-        range_sigma_m: 1e-4,
-        ..Default::default()
-    };
-    let points: Bulk<ProfilePoint> = (0..POINTS).map(point).collect();
+fn points_per_second(c: &mut Criterion) {
+    let calibration = calibration();
+    let mut triangulator = Triangulator::new(triangulate::Config::default(), &calibration).unwrap();
     let mut register = Register::new(Config::default(), &calibration).unwrap();
+    let mut stripe = handset::stripe(0, &|p| p.z, 0.1, || 0.0);
+    let peaks: Vec<StripePeak> = stripe.peaks.iter().copied().cycle().take(PEAKS as usize).collect();
+    stripe.peaks = Bulk(peaks);
     let mut stamp = 0;
-    let mut group = c.benchmark_group("register");
-    group.throughput(Throughput::Elements(u64::from(POINTS)));
-    group.bench_function("profile of 1000 points", |b| {
+    let mut group = c.benchmark_group("triangulate and register");
+    group.throughput(Throughput::Elements(PEAKS));
+    group.bench_function("stripe of 1024 peaks", |b| {
         b.iter(|| {
-            stamp += 10_000_000;
-            register.pose(&pose(stamp));
-            register.profile(Profile { header: header(stamp - 4_000_000), points: points.clone(), refused: vec![] });
-            black_box(register.drain().count());
+            for k in 0..4 {
+                register.pose(&pose(stamp + k * POSE_NANOS));
+            }
+            stripe.header.stamp_nanos = stamp + 5_000_000;
+            register.profile(triangulator.process(&stripe));
+            let points = register.drain().map(|scan| black_box(scan).points.len()).sum::<usize>();
+            assert_eq!(points, PEAKS as usize);
             black_box(register.trajectory());
+            stamp += FRAME_NANOS;
         });
     });
-    group.finish();
 }
 
-criterion_group!(benches, bench);
+criterion_group!(benches, points_per_second);
 criterion_main!(benches);

@@ -18,7 +18,7 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        Self { most_gap_ms: 100.0, most_wait_ms: 2000.0, most_waiting: 1000, use_degraded: true }
+        Self { most_gap_ms: 100.0, most_wait_ms: 60_000.0, most_waiting: 4096, use_degraded: true }
     }
 }
 

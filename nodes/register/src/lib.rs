@@ -10,7 +10,10 @@
 //! (`rotation_lag_nanos`): each is interpolated at its own.
 //!
 //! The wait is bounded by [`Config::most_waiting`] and [`Config::most_wait_ms`]. What gets no pose is refused, and the
-//! next scan says how many for which reason; nothing is dropped unsaid.
+//! next scan says how many for which reason; nothing is dropped unsaid. Readings are kept for ten minutes, so poses and
+//! profiles may come in any order between the two streams: a node that starts in mid-scan gets all of both at once.
+//!
+//! A higher scan number starts afresh. Profiles of phase `Aim` are refused: while aiming nothing is kept.
 //!
 //! ```
 //! use register::{Config, Register};
@@ -36,6 +39,7 @@
 mod config;
 #[cfg(feature = "node")]
 pub mod node;
+mod place;
 mod readings;
 mod register;
 

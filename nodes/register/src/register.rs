@@ -1,13 +1,12 @@
 //! R(t) x + p(t) (paper, section 2.3).
 
-use crate::readings::Readings;
+use crate::place::Place;
+use crate::readings::{KEPT_NANOS, Readings};
 use crate::{Config, ConfigError};
 use geometry::{NoPose, TimedPose, rigid_from_wire, rigid_to_wire};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
-use wire::{
-    Bulk, Calibration, Header, Pose, Profile, ProfilePoint, Refusal, Scan, ScanPoint, Trajectory, TrajectorySample,
-};
+use wire::{Bulk, Calibration, Header, Phase, Pose, Profile, Refusal, Scan, Trajectory};
 
 /// Why nothing can be registered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -26,17 +25,27 @@ pub struct Register {
     config: Config,
     body_from_camera: Isometry3<f64>,
     offset_nanos: i64,
+    /// Of the present scan; `None` before the first message.
+    header: Option<Header>,
+    /// The present scan may give way to the next.
+    finished: bool,
     readings: Readings,
+    /// Readings of the next scan that came before the last profiles of this one.
+    next: Option<(Header, Readings)>,
     waiting: VecDeque<Profile>,
     registered: VecDeque<Scan>,
-    way: Vec<TrajectorySample>,
-    header: Header,
+    /// What is left to tell of scans before this one.
+    older_ways: VecDeque<Trajectory>,
     refused: BTreeMap<&'static str, u64>,
 }
 
 const TIMED_OUT: &str = "profile without a pose behind it in time";
 const TOO_MANY: &str = "profile, because too many waited for poses";
 const BACKWARDS: &str = "profile whose time goes backwards";
+const FAR_AHEAD: &str = "profile whose time is far ahead of the poses";
+const OLD_PROFILE: &str = "profile of an older scan";
+const OLD_POSE: &str = "pose of an older scan";
+const AIMING: &str = "profile taken while aiming";
 const NOT_FINITE: &str = "point that is not finite";
 
 impl Register {
@@ -48,38 +57,68 @@ impl Register {
             config,
             body_from_camera: rigid_from_wire(&hand_eye).ok_or(RegisterError::HandEye(hand_eye))?,
             offset_nanos: calibration.pose_offset_nanos,
+            header: None,
+            finished: false,
             readings: Readings::default(),
+            next: None,
             waiting: VecDeque::new(),
             registered: VecDeque::new(),
-            way: Vec::new(),
-            header: Header::default(),
+            older_ways: VecDeque::new(),
             refused: BTreeMap::new(),
         })
     }
 
-    /// Takes a reading of the tracker. A higher scan number starts afresh.
+    /// Takes a reading of the tracker. One of a higher scan waits until a profile of that scan has come, or until this
+    /// scan is finished, because the last profiles of this scan may still be on their way.
     pub fn pose(&mut self, pose: &Pose) {
-        self.renew(&pose.header);
-        if pose.header.scan < self.header.scan {
-            return self.refuse("pose of an older scan", 1);
+        let header = pose.header;
+        match self.header {
+            Some(present) if header.scan < present.scan => return self.refuse(OLD_POSE, 1),
+            Some(present) if header.scan > present.scan && !self.finished => return self.pose_of_next(pose),
+            Some(present) if header.scan == present.scan => {}
+            _ => self.begin(&header),
+        }
+        if let Some(present) = &mut self.header {
+            present.phase = header.phase;
         }
         match self.readings.take(pose, self.offset_nanos, self.config.use_degraded) {
-            Ok(reading) => {
-                let camera = TimedPose { pose: reading.pose * self.body_from_camera, ..reading };
-                self.way.push((&camera).into());
-                self.serve();
-            }
+            Ok(()) => self.serve(),
             Err(bad) => self.refuse(bad.reason(), 1),
+        }
+    }
+
+    fn pose_of_next(&mut self, pose: &Pose) {
+        let header = pose.header;
+        match &self.next {
+            Some((next, _)) if header.scan < next.scan => return self.refuse(OLD_POSE, 1),
+            // Two scans ahead: of the present one nothing comes any more.
+            Some((next, _)) if header.scan > next.scan => {
+                let next = *next;
+                self.begin(&next);
+                self.next = Some((header, Readings::default()));
+            }
+            Some(_) => {}
+            None => self.next = Some((header, Readings::default())),
+        }
+        if let Some((_, readings)) = &mut self.next
+            && let Err(bad) = readings.take(pose, self.offset_nanos, self.config.use_degraded)
+        {
+            self.refuse(bad.reason(), 1);
         }
     }
 
     /// Takes a profile. A higher scan number starts afresh.
     pub fn profile(&mut self, profile: Profile) {
-        self.renew(&profile.header);
-        if profile.header.scan < self.header.scan {
-            return self.refuse("profile of an older scan", 1);
+        let header = profile.header;
+        match self.header {
+            Some(present) if header.scan < present.scan => return self.refuse(OLD_PROFILE, 1),
+            Some(present) if header.scan == present.scan => {}
+            _ => self.begin(&header),
         }
-        if self.waiting.back().is_some_and(|last| profile.header.stamp_nanos <= last.header.stamp_nanos) {
+        if header.phase == Phase::Aim {
+            return self.refuse(AIMING, 1);
+        }
+        if self.waiting.back().is_some_and(|last| header.stamp_nanos <= last.header.stamp_nanos) {
             return self.refuse(BACKWARDS, 1);
         }
         self.waiting.push_back(profile);
@@ -95,31 +134,48 @@ impl Register {
         self.registered.drain(..)
     }
 
-    /// Where the camera was at the readings since the last call; `None` when there was none.
+    /// Where the camera was at the readings since the last call; `None` when there was none. A reading whose rotation is
+    /// older than its position is told when the rotation at that moment is known. After a new scan began, the first call
+    /// tells the rest of the scan before.
     pub fn trajectory(&mut self) -> Option<Trajectory> {
-        let last = self.way.last()?;
-        let header = Header { stamp_nanos: last.stamp_nanos, ..self.header.derived() };
-        Some(Trajectory { header, samples: Bulk(std::mem::take(&mut self.way)) })
+        self.older_ways.pop_front().or_else(|| self.way())
     }
 
-    /// No reading will come any more: what still waits is refused. Returns what was refused and not yet told.
+    fn way(&mut self) -> Option<Trajectory> {
+        let header = self.header?;
+        let way = self.readings.tell(self.config.most_gap_nanos());
+        let header = Header { stamp_nanos: way.last()?.stamp_nanos, ..header.derived() };
+        let camera = |body: &TimedPose| TimedPose { pose: body.pose * self.body_from_camera, ..*body };
+        Some(Trajectory { header, samples: way.iter().map(|body| (&camera(body)).into()).collect() })
+    }
+
+    /// No reading of this scan will come any more: what still waits is refused. Returns what was refused and not yet told.
     pub fn finish(&mut self) -> Vec<Refusal> {
-        let left = self.waiting.len() as u64;
-        self.waiting.clear();
-        if left > 0 {
-            self.refuse(unplaced(NoPose::After), left);
-        }
+        self.give_up_waiting();
+        self.finished = true;
         self.take_refused()
     }
 
-    fn renew(&mut self, header: &Header) {
-        if header.scan > self.header.scan {
-            self.readings.clear();
-            self.waiting.clear();
-            self.way.clear();
-            self.header = Header { stamp_nanos: 0, ..header.derived() };
-        }
-        self.header.phase = header.phase;
+    fn give_up_waiting(&mut self) {
+        let left = self.waiting.len() as u64;
+        self.waiting.clear();
+        self.refuse(unplaced(NoPose::After), left);
+    }
+
+    /// Starts a scan, with the readings of it that have come already.
+    fn begin(&mut self, header: &Header) {
+        self.give_up_waiting();
+        let rest = self.way();
+        self.older_ways.extend(rest);
+        self.readings = match self.next.take() {
+            Some((next, readings)) if next.scan == header.scan => readings,
+            other => {
+                self.next = other.filter(|(next, _)| next.scan > header.scan);
+                Readings::default()
+            }
+        };
+        self.header = Some(*header);
+        self.finished = false;
     }
 
     /// Registers what has its poses by now.
@@ -131,6 +187,10 @@ impl Register {
                     let Some(profile) = self.waiting.pop_front() else { return };
                     let scan = self.register(&profile, &body);
                     self.registered.push_back(scan);
+                }
+                Err(NoPose::After) if self.is_far_ahead(stamp_nanos) => {
+                    self.waiting.pop_front();
+                    self.refuse(FAR_AHEAD, 1);
                 }
                 Err(NoPose::After) => {
                     let newest = self.waiting.back().map_or(stamp_nanos, |last| last.header.stamp_nanos);
@@ -146,6 +206,10 @@ impl Register {
                 }
             }
         }
+    }
+
+    fn is_far_ahead(&self, stamp_nanos: i64) -> bool {
+        self.readings.newest().is_some_and(|newest| stamp_nanos.saturating_sub(newest) > KEPT_NANOS)
     }
 
     fn register(&mut self, profile: &Profile, body: &TimedPose) -> Scan {
@@ -181,32 +245,5 @@ fn unplaced(why: NoPose) -> &'static str {
         NoPose::Before => "profile before the first pose",
         NoPose::After => "profile after the last pose",
         NoPose::Gap => "profile in a gap between poses",
-    }
-}
-
-/// R and p in single precision, relative to the camera's own place so that nothing is lost far from the origin.
-struct Place {
-    rotation: nalgebra::Matrix3<f32>,
-    camera_in_world: Point3<f64>,
-}
-
-impl Place {
-    fn new(world_from_camera: &Isometry3<f64>) -> Self {
-        let rotation = world_from_camera.rotation.to_rotation_matrix().into_inner().cast();
-        Self { rotation, camera_in_world: Point3::from(world_from_camera.translation.vector) }
-    }
-
-    fn of(&self, point: &ProfilePoint) -> Option<ScanPoint> {
-        let ray = self.rotation * nalgebra::Vector3::from(point.position_m);
-        let to_sensor = -ray / ray.norm();
-        let position = [0, 1, 2].map(|axis| (self.camera_in_world[axis] + f64::from(ray[axis])) as f32);
-        let finite =
-            position.iter().chain(to_sensor.iter()).chain([&point.range_sigma_m]).all(|value| value.is_finite());
-        finite.then(|| ScanPoint {
-            position_m: position,
-            to_sensor: to_sensor.into(),
-            sigma_m: point.range_sigma_m,
-            amplitude: point.amplitude,
-        })
     }
 }

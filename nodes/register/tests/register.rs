@@ -1,5 +1,7 @@
 //! Points against a way that is known exactly, and everything that can be wrong with poses.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use register::{Config, Register};
@@ -168,6 +170,108 @@ fn a_new_scan_starts_afresh_and_an_old_one_is_refused() {
     assert_eq!(register.drain().count(), 1);
     register.profile(profile(5 * MS));
     assert_eq!(reasons(&register.finish()), [("profile of an older scan", 1)]);
+}
+
+/// Everything that was refused, by reason.
+fn told(scans: Vec<Scan>, rest: Vec<Refusal>) -> Vec<(String, u64)> {
+    let mut all: Vec<_> = scans.into_iter().flat_map(|scan| scan.refused).chain(rest).collect();
+    all.sort_by(|a, b| a.reason.cmp(&b.reason));
+    all.into_iter().map(|refusal| (refusal.reason, refusal.count)).collect()
+}
+
+#[test]
+fn poses_may_all_come_before_the_profiles_or_behind_them() {
+    let poses: Vec<Pose> = (0..9000).map(|i| pose(i * 10 * MS, &world_from_body(i * 10 * MS))).collect();
+    let profiles: Vec<Profile> = (0..1500).map(|i| profile(i * 40 * MS + MS)).collect();
+    let mut poses_first = Register::new(Config::default(), &calibration(0)).unwrap();
+    poses.iter().for_each(|pose| poses_first.pose(pose));
+    profiles.iter().for_each(|profile| poses_first.profile(profile.clone()));
+    let mut profiles_first = Register::new(Config::default(), &calibration(0)).unwrap();
+    profiles.iter().for_each(|profile| profiles_first.profile(profile.clone()));
+    poses.iter().for_each(|pose| profiles_first.pose(pose));
+    let scans: Vec<Scan> = poses_first.drain().collect();
+    assert_eq!(scans.len(), 1500);
+    assert_eq!(scans, profiles_first.drain().collect::<Vec<_>>());
+}
+
+#[test]
+fn the_way_has_each_rotation_at_its_own_moment() {
+    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    let lag = 25 * MS;
+    let mut samples = Vec::new();
+    for i in 0..40 {
+        let stamp = i * 10 * MS;
+        let parts = Isometry3::from_parts(world_from_body(stamp).translation, world_from_body(stamp - lag).rotation);
+        register.pose(&Pose { rotation_lag_nanos: lag, ..pose(stamp, &parts) });
+        samples.extend(register.trajectory().into_iter().flat_map(|way| way.samples.0));
+    }
+    // The rotation at the last three readings has not been measured yet.
+    assert_eq!((samples.len(), samples[0].stamp_nanos), (37, 0));
+    for sample in &samples {
+        let truth = world_from_body(sample.stamp_nanos) * body_from_camera();
+        let found = geometry::TimedPose::from(sample).pose;
+        assert!(found.rotation.angle_to(&truth.rotation) < 1e-9);
+        assert!((found.translation.vector - truth.translation.vector).norm() < 1e-9);
+    }
+}
+
+#[test]
+fn poses_of_the_next_scan_do_not_push_out_the_last_profiles_of_this_one() {
+    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    let of = |scan, stamp: i64| Header { scan, ..header(stamp * MS) };
+    let reading = |scan, stamp| Pose { header: of(scan, stamp), ..pose(0, &world_from_body(stamp * MS)) };
+    for stamp in [0, 10, 20] {
+        register.pose(&reading(1, stamp));
+    }
+    for stamp in [500, 510] {
+        register.pose(&reading(2, stamp));
+    }
+    register.profile(Profile { header: of(1, 15), ..profile(0) });
+    register.profile(Profile { header: of(1, 25), ..profile(0) });
+    register.profile(Profile { header: of(2, 505), ..profile(0) });
+    let scans: Vec<Scan> = register.drain().collect();
+    assert_eq!(
+        scans.iter().map(|s| (s.header.scan, s.header.stamp_nanos / MS)).collect::<Vec<_>>(),
+        [(1, 15), (2, 505)]
+    );
+    assert_eq!(told(scans, register.finish()), [("profile after the last pose".to_owned(), 1)]);
+    let ways = [register.trajectory().unwrap(), register.trajectory().unwrap()];
+    assert_eq!(ways.map(|way| (way.header.scan, way.samples.len())), [(1, 3), (2, 2)]);
+    // Once a scan is finished, the next begins with its first pose.
+    register.pose(&reading(3, 900));
+    assert_eq!(register.trajectory().unwrap().header.scan, 3);
+}
+
+#[test]
+fn while_aiming_nothing_is_kept() {
+    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    register.profile(Profile { header: Header { phase: Phase::Aim, ..header(5 * MS) }, ..profile(0) });
+    register.pose(&pose(0, &world_from_body(0)));
+    register.pose(&pose(10 * MS, &world_from_body(0)));
+    assert_eq!(register.drain().count(), 0);
+    assert_eq!(reasons(&register.finish()), [("profile taken while aiming", 1)]);
+}
+
+#[test]
+fn one_stamp_from_another_time_spoils_nothing() {
+    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    for stamp in [0, 10, i64::MAX / MS, 20, i64::MIN / MS, 30] {
+        register.pose(&pose(stamp * MS, &world_from_body(0)));
+    }
+    for stamp in [5, i64::MAX / MS, 15, 25] {
+        register.profile(profile(stamp * MS));
+    }
+    let scans: Vec<Scan> = register.drain().collect();
+    assert_eq!(scans.len(), 3);
+    let refused = told(scans, register.finish());
+    assert_eq!(refused.iter().map(|(_, count)| count).sum::<u64>(), 3, "{refused:?}");
+    // A tracker whose clock was set back is believed at its second reading.
+    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    for stamp in [900_000, 900_010, 0, 10, 20] {
+        register.pose(&pose(stamp * MS, &world_from_body(0)));
+    }
+    register.profile(profile(15 * MS));
+    assert_eq!(register.drain().count(), 1);
 }
 
 proptest! {
