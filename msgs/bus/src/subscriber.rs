@@ -47,6 +47,7 @@ pub struct Subscriber<M> {
     ring: Ring,
     key: String,
     fresh_only: bool,
+    counts_gaps: bool,
     account: SequenceAccount,
     counts: InputCounts,
     message: PhantomData<fn() -> M>,
@@ -64,6 +65,7 @@ pub(crate) fn declare<M: Message>(
         ring,
         key: key.to_owned(),
         fresh_only: false,
+        counts_gaps: true,
         account: SequenceAccount::default(),
         counts: InputCounts::default(),
         message: PhantomData,
@@ -75,6 +77,12 @@ impl<M: Message> Subscriber<M> {
     /// history again.
     pub fn fresh_only(mut self) -> Self {
         self.fresh_only = true;
+        self
+    }
+
+    /// For whoever looks now and then and takes what is newest: what it lets go is no loss.
+    pub fn glimpses(mut self) -> Self {
+        self.counts_gaps = false;
         self
     }
 
@@ -117,7 +125,7 @@ impl<M: Message> Subscriber<M> {
             self.account.note(key, message.header());
             return Ok(None);
         }
-        let missing = self.account.note(key, message.header());
+        let missing = if self.counts_gaps { self.account.note(key, message.header()) } else { 0 };
         if missing > 0 {
             self.counts.lost = self.account.lost;
             tracing::error!("{key}: {missing} messages lost before number {}", message.header().seq);

@@ -104,6 +104,13 @@ impl Node {
         Ok(input)
     }
 
+    /// Opens an input that holds only the newest message: for whoever looks now and then. What it lets go is no loss.
+    pub fn glimpse<M: Message>(&mut self, topic: &Topic<M>) -> anyhow::Result<Input<M>> {
+        let input = Input::new(self.bus.subscribe(topic, 1)?.glimpses());
+        self.account.inputs.push((topic.key.clone(), input.counts()));
+        Ok(input)
+    }
+
     /// Opens an input of everything whose key matches, undecoded.
     pub fn raw(&mut self, key_expression: &str, depth: usize) -> anyhow::Result<RawSubscriber> {
         Ok(self.bus.subscribe_raw(key_expression, depth)?)
@@ -155,11 +162,15 @@ impl Node {
         self.account.rests();
         self.bus.wait(nap);
         self.account.wakes();
+        self.hear();
+        self.say();
+        !self.stopper.is_stopping()
+    }
+
+    fn hear(&mut self) {
         while let Some(phase) = self.phases.next() {
             self.phase = Some(phase);
         }
-        self.say();
-        !self.stopper.is_stopping()
     }
 
     /// What the operator said last.
@@ -224,6 +235,8 @@ impl Node {
         let started = Instant::now();
         let mut warned = false;
         loop {
+            // A source that is behind its time never rests, and must hear the operator all the same.
+            self.hear();
             let ended =
                 self.phase.as_ref().is_some_and(|run| run.header.phase == Phase::End || run.header.scan > go.scan);
             if ended || self.stopper.is_stopping() {

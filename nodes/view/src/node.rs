@@ -23,13 +23,13 @@ struct Inputs {
 impl Inputs {
     fn open(node: &mut Node, camera: &str) -> anyhow::Result<Self> {
         Ok(Self {
-            frames: node.input(&topic::frame(camera), 1)?,
-            stripes: node.input(&topic::stripe(camera), 1)?,
-            trajectories: node.input(&topic::trajectory(camera), 8)?,
-            scans: node.input(&topic::scan(camera), 1)?,
+            frames: node.glimpse(&topic::frame(camera))?,
+            stripes: node.glimpse(&topic::stripe(camera))?,
+            trajectories: node.glimpse(&topic::trajectory(camera))?,
+            scans: node.glimpse(&topic::scan(camera))?,
             clouds: node.input(&topic::cloud(), 4096)?,
-            meshes: node.input(&topic::mesh(), 1)?,
-            models: node.input(&topic::textured(), 1)?,
+            meshes: node.glimpse(&topic::mesh())?,
+            models: node.glimpse(&topic::textured())?,
             healths: node.input(&topic::health("**"), 256)?,
             logs: node.input(&topic::log("**"), 256)?,
         })
