@@ -1,6 +1,6 @@
 //! `limn up FILE`: a rig from its first node to its last.
 
-use crate::board::Event;
+use crate::board::{Event, Process, Status};
 use crate::cli::LaunchFile;
 use crate::keys::{self, Keys};
 use crate::launcher::{Launcher, Options};
@@ -91,7 +91,7 @@ async fn watch(
             }
             order = next(&mut orders) => launcher.order(order),
             event = events.recv() => match event {
-                Ok(event) => tell(&event, say),
+                Ok(event) => tell(&event, &launcher.status(), say),
                 Err(broadcast::error::RecvError::Lagged(missed)) => say(LogLevel::Warn, format!("{missed} events missed")),
                 Err(broadcast::error::RecvError::Closed) => return Ok(()),
             },
@@ -138,15 +138,17 @@ async fn next(orders: &mut Option<mpsc::Receiver<Order>>) -> Order {
     std::future::pending().await
 }
 
-fn tell(event: &Event, say: &impl Fn(LogLevel, String)) {
+fn tell(event: &Event, status: &Status, say: &impl Fn(LogLevel, String)) {
+    let elsewhere = |node: &String| status.nodes.get(node).is_some_and(|node| node.process == Process::Elsewhere);
     match event {
         Event::Ready { node } => say(LogLevel::Info, format!("{node} is ready")),
         Event::Finished { node, scan } => say(LogLevel::Info, format!("{node} has finished scan {scan}")),
         Event::Phase { scan, phase } => say(LogLevel::Info, format!("scan {scan}: {phase:?}")),
-        Event::Gone { node } => say(LogLevel::Debug, format!("{node} has left the bus")),
+        // Of our own nodes a supervisor knows more.
+        Event::Gone { node } if elsewhere(node) => say(LogLevel::Warn, format!("{node} has left the bus")),
         Event::Ended { node } => say(LogLevel::Info, format!("{node} has ended")),
         // A supervisor tells of failures itself.
-        Event::Started { .. } | Event::Restarting { .. } | Event::Failed { .. } => {}
+        Event::Started { .. } | Event::Restarting { .. } | Event::Failed { .. } | Event::Gone { .. } => {}
     }
 }
 

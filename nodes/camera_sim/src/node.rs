@@ -3,8 +3,8 @@
 use crate::CameraSim;
 use kit::{Go, Node};
 use std::sync::mpsc;
-use world::Setup;
 use wire::{Bulk, Frame, Header, Phase, Trajectory, topic};
+use world::Setup;
 
 /// Pictures that are rendered ahead, by batches.
 const BATCHES_AHEAD: usize = 2;

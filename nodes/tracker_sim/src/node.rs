@@ -2,8 +2,8 @@
 
 use crate::TrackerSim;
 use kit::Node;
-use world::Setup;
 use wire::{Header, Phase, Pose, Quality, RigidPose, topic};
+use world::Setup;
 
 /// Sends the readings of one scan after the other until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
