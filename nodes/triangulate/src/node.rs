@@ -21,7 +21,8 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             if stripe.header.is_end() {
                 let header = stripe.header.derived();
                 profiles.send(Profile { header, points: Bulk::default(), refused: Vec::new() })?;
-            } else if stripe.light.laser {
+            } else {
+                // An unlit picture gives an empty profile: those behind learn that the scan has come so far.
                 let profile = triangulator.process(&stripe);
                 profile.refused.iter().for_each(|refusal| node.refuse(&refusal.reason, refusal.count));
                 profiles.send(profile)?;
