@@ -1,5 +1,7 @@
 //! The demo as a user runs it, on a short sweep: what comes out, and that the same comes out again.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use std::path::Path;
 use system_tests::{limn, report, succeed};
 

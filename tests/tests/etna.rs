@@ -1,5 +1,7 @@
 //! Real pictures of a robot-held camera and laser, through the whole pipeline.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use nalgebra::{Matrix3, Point3, Vector3};
 use system_tests::{limn, report, shared_data, succeed};
 

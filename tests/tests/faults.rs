@@ -1,5 +1,7 @@
 //! What happens when processes die.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Child, Stdio};

@@ -2,6 +2,8 @@
 //!
 //! A message that is new, or has a new version, gets its file by `BLESS=1 cargo test -p wire --test golden`.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use wire::*;

@@ -1,5 +1,7 @@
 //! The table is found, and only the table.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use cluster::TablePlane;
 use nalgebra::{Isometry3, Point3, Vector3};
 use wire::CloudPoint;
