@@ -95,7 +95,14 @@ pub(crate) fn mesh(rec: &RecordingStream, mesh: &Mesh) -> Result {
         Boxes3D::from_centers_and_half_sizes([<[f32; 3]>::from((low + half).coords)], [<[f32; 3]>::from(half)]);
     let millimetres = (half * 2000.0).map(|edge| edge.round());
     let label = format!("{} x {} x {} mm", millimetres.x, millimetres.y, millimetres.z);
-    rec.log("world/bounds", &box_around.with_colors([TRAIL]).with_radii([0.0002]).with_labels([label]))
+    rec.log(
+        "world/bounds",
+        &box_around
+            .with_colors([TRAIL])
+            .with_radii([0.0002])
+            .with_labels([label])
+            .with_fill_mode(rerun::FillMode::MajorWireframe),
+    )
 }
 
 pub(crate) fn model(rec: &RecordingStream, model: &Model) -> Result {
