@@ -23,7 +23,6 @@ pub struct Publisher<M> {
     line: Line,
     key: String,
     next_seq: u64,
-    bytes: u64,
     message: PhantomData<fn(M)>,
 }
 
@@ -52,13 +51,7 @@ pub(crate) fn declare<M: Message>(session: &Session, topic: &Topic<M>) -> Result
         Class::Stream => kept(builder, STREAM_HISTORY),
         Class::Latched => kept(builder, 1),
     };
-    Ok(Publisher {
-        line: line.map_err(declaring())?,
-        key: topic.key.clone(),
-        next_seq: 0,
-        bytes: 0,
-        message: PhantomData,
-    })
+    Ok(Publisher { line: line.map_err(declaring())?, key: topic.key.clone(), next_seq: 0, message: PhantomData })
 }
 
 impl<M: Message> Publisher<M> {
@@ -67,7 +60,6 @@ impl<M: Message> Publisher<M> {
         message.header_mut().seq = self.next_seq;
         let bytes = codec::encode(&message);
         self.next_seq += 1;
-        self.bytes += bytes.len() as u64;
         match &self.line {
             Line::Plain(publisher) => publisher.put(bytes).wait(),
             Line::Kept(publisher) => publisher.put(bytes).wait(),
@@ -78,10 +70,5 @@ impl<M: Message> Publisher<M> {
     /// How many have been sent.
     pub fn sent(&self) -> u64 {
         self.next_seq
-    }
-
-    /// How many bytes they were.
-    pub fn sent_bytes(&self) -> u64 {
-        self.bytes
     }
 }
