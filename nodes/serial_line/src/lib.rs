@@ -1,0 +1,60 @@
+//! A serial line to a device that measures, and when what came over it was measured.
+//!
+//! In: arrivals of records on the host's clock ([`HostClock`]). Out: the same moments without what delayed them, in
+//! nanoseconds of the host's clock. A node takes off [`wire_nanos`] and the device's own latency, and has the stamp.
+//!
+//! - [`RateLock`]: for devices without a clock that measure at an even rate. 100 Hz with 0-10 ms of jitter comes out
+//!   within 0.1 ms rms (`tests/clocks.rs`).
+//! - [`DeviceClock`]: for devices that send the time of their own clock.
+//! - [`Envelope`]: the line under all arrivals, which both stand on: delays only add.
+//!
+//! With the feature `serial`:
+//!
+//! - `Line`: a port, raw and without flow control, with its modem lines as the device wants them; each failure is a
+//!   sentence that says what to do.
+//! - `Session`: a thread that opens, sets up, listens, names what is wrong within a second, and starts again, for ever.
+//! - `Pty`, `Faults`: the other end of a line, for emulators: a pseudo-terminal, and what goes wrong on real lines.
+//!
+//! Both trackers need this and nodes never depend on nodes; it is no part of `kit`, which brings the bus. It is the only
+//! crate that names serialport.
+
+mod device_clock;
+mod envelope;
+mod faults;
+mod host_clock;
+#[cfg(feature = "serial")]
+mod line;
+#[cfg(feature = "serial")]
+mod line_error;
+#[cfg(feature = "serial")]
+mod pty;
+mod rate_lock;
+#[cfg(feature = "serial")]
+mod session;
+mod wire_time;
+
+pub use device_clock::DeviceClock;
+pub use envelope::{Envelope, FittedLine};
+pub use faults::{Delivery, Faults, FaultsConfig};
+pub use host_clock::HostClock;
+#[cfg(feature = "serial")]
+pub use line::{Chunk, Line, LineSettings};
+#[cfg(feature = "serial")]
+pub use line_error::LineError;
+#[cfg(feature = "serial")]
+pub use pty::{Emulated, Pty, PtyError};
+pub use rate_lock::RateLock;
+#[cfg(feature = "serial")]
+pub use session::{Arrived, Counts, Device, Heard, News, Session, Tally, Trouble};
+pub use wire_time::wire_nanos;
+
+/// A moment of arrival without what delayed it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Undelayed {
+    /// On the clock of the arrivals.
+    pub nanos: i64,
+    /// How much later it arrived.
+    pub removed_nanos: i64,
+    /// True once enough was heard to be sure.
+    pub settled: bool,
+}

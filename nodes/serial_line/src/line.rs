@@ -1,0 +1,189 @@
+//! An open port.
+
+use crate::{HostClock, LineError};
+use serialport::{ClearBuffer, ErrorKind, SerialPort as _, TTYPort};
+use std::io::{ErrorKind as IoKind, Read as _, Write as _};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Waits are cut into pieces of this length, so that a node that was told to stop does.
+const NAP: Duration = Duration::from_millis(20);
+const MOST_WRITE: Duration = Duration::from_millis(500);
+
+/// How a port is opened: 8 data bits, no parity, 1 stop bit, no flow control (data hold the bytes of XON and XOFF).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LineSettings {
+    /// Stable names under /dev/serial/by-id survive unplugging.
+    pub path: PathBuf,
+    /// Bits a second.
+    pub baud: u32,
+    /// Request To Send is raised. Systems raise it as they open a port; here it is lowered at once unless this says so.
+    pub rts: bool,
+    /// Data Terminal Ready is raised.
+    pub dtr: bool,
+}
+
+/// Bytes that came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Chunk {
+    /// How many; 0 when nothing came in the time.
+    pub len: usize,
+    /// When the last of them was read, on the host's clock.
+    pub arrival_nanos: i64,
+}
+
+/// A port, open and raw.
+pub struct Line {
+    port: TTYPort,
+    settings: LineSettings,
+    clock: HostClock,
+    stopping: Arc<AtomicBool>,
+    has_modem_lines: bool,
+}
+
+impl Line {
+    /// Opens a port for this program alone.
+    pub fn open(settings: &LineSettings, clock: HostClock, stopping: Arc<AtomicBool>) -> Result<Self, LineError> {
+        let builder = serialport::new(settings.path.to_string_lossy(), settings.baud)
+            .timeout(NAP)
+            .dtr_on_open(settings.dtr)
+            .exclusive(true);
+        let port = TTYPort::open(&builder).map_err(|error| open_error(settings, &error))?;
+        let mut line = Self { port, settings: settings.clone(), clock, stopping, has_modem_lines: true };
+        line.has_modem_lines = line.set_rts(settings.rts);
+        line.port.set_timeout(NAP).map_err(|error| line.gone(&error.to_string()))?;
+        Ok(line)
+    }
+
+    /// Raises or lowers RTS; false when the line has none (a pseudo-terminal).
+    pub fn set_rts(&mut self, high: bool) -> bool {
+        self.port.write_request_to_send(high).is_ok()
+    }
+
+    /// Whether RTS and DTR are real here.
+    pub fn has_modem_lines(&self) -> bool {
+        self.has_modem_lines
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> &LineSettings {
+        &self.settings
+    }
+
+    /// Its clock.
+    pub fn clock(&self) -> HostClock {
+        self.clock
+    }
+
+    /// What has come, as soon as anything has; nothing after 20 ms of silence.
+    pub fn read(&mut self, buffer: &mut [u8]) -> Result<Chunk, LineError> {
+        self.check_stop()?;
+        match self.port.read(buffer) {
+            // A serial port has no end: this one is gone.
+            Ok(0) => Err(self.gone("end of file")),
+            Ok(len) => Ok(Chunk { len, arrival_nanos: self.clock.now_nanos() }),
+            Err(error) if passing(error.kind()) => Ok(Chunk { len: 0, arrival_nanos: self.clock.now_nanos() }),
+            Err(error) => Err(self.gone(&error.to_string())),
+        }
+    }
+
+    /// Sends all bytes.
+    pub fn write(&mut self, mut bytes: &[u8]) -> Result<(), LineError> {
+        let started = Instant::now();
+        while !bytes.is_empty() {
+            self.check_stop()?;
+            match self.port.write(bytes) {
+                Ok(sent) => bytes = &bytes[sent..],
+                Err(error) if passing(error.kind()) => {
+                    if started.elapsed() > MOST_WRITE {
+                        return Err(LineError::Stuck { path: self.settings.path.clone() });
+                    }
+                }
+                Err(error) => return Err(self.gone(&error.to_string())),
+            }
+        }
+        Ok(())
+    }
+
+    /// Rests, and lets arrive what may.
+    pub fn pause(&self, time: Duration) -> Result<(), LineError> {
+        let until = Instant::now() + time;
+        loop {
+            self.check_stop()?;
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            std::thread::sleep(left.min(NAP));
+        }
+    }
+
+    /// Throws away what comes until nothing has come for `quiet`; false when it never fell quiet within `most`.
+    pub fn drain(&mut self, quiet: Duration, most: Duration) -> Result<bool, LineError> {
+        let started = Instant::now();
+        let mut last = Instant::now();
+        let mut scrap = [0u8; 512];
+        // What the system has gathered so far is old; a port without such a buffer has none to clear.
+        let _ = self.port.clear(ClearBuffer::Input);
+        while last.elapsed() < quiet {
+            if self.read(&mut scrap)?.len > 0 {
+                last = Instant::now();
+            }
+            if started.elapsed() > most {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Sends a question and reads an answer of `len` bytes; fewer when no more came in `most`.
+    pub fn ask(&mut self, question: &[u8], len: usize, most: Duration) -> Result<Vec<u8>, LineError> {
+        self.write(question)?;
+        let started = Instant::now();
+        let mut answer = vec![0; len];
+        let mut have = 0;
+        while have < len && started.elapsed() < most {
+            have += self.read(&mut answer[have..])?.len;
+        }
+        answer.truncate(have);
+        Ok(answer)
+    }
+
+    fn check_stop(&self) -> Result<(), LineError> {
+        if self.stopping.load(Ordering::SeqCst) { Err(LineError::Stopped) } else { Ok(()) }
+    }
+
+    fn gone(&self, reason: &str) -> LineError {
+        LineError::Unplugged { path: self.settings.path.clone(), reason: reason.to_owned() }
+    }
+}
+
+fn passing(kind: IoKind) -> bool {
+    matches!(kind, IoKind::TimedOut | IoKind::Interrupted | IoKind::WouldBlock)
+}
+
+fn open_error(settings: &LineSettings, error: &serialport::Error) -> LineError {
+    let path = settings.path.clone();
+    let reason = error.description.clone();
+    match error.kind() {
+        ErrorKind::Io(IoKind::NotFound) => LineError::NotThere { path, present: present() },
+        ErrorKind::Io(IoKind::PermissionDenied) => LineError::NoPermission { path },
+        // Both of the locks (TIOCEXCL and flock) end here.
+        ErrorKind::NoDevice => LineError::Busy { path },
+        ErrorKind::InvalidInput => LineError::Baud { path, baud: settings.baud, reason },
+        _ => LineError::NotSerial { path, reason, present: present() },
+    }
+}
+
+/// The ports of this machine, as the end of a sentence.
+fn present() -> String {
+    let names: Vec<String> =
+        serialport::available_ports().unwrap_or_default().into_iter().map(|port| port.port_name).collect();
+    if names.is_empty() {
+        " (no serial port is there)".to_owned()
+    } else {
+        format!(" (there are: {})", names.join(", "))
+    }
+}

@@ -1,0 +1,1 @@
+//! Poses from an Ascension Flock of Birds.

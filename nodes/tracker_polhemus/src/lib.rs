@@ -1,0 +1,1 @@
+//! Poses from a Polhemus Fastrak, Liberty or Patriot.
