@@ -24,6 +24,7 @@ mod raster;
 mod rig;
 mod sample;
 mod sheet;
+pub mod smooth;
 mod trajectory;
 
 pub use align::{AlignError, Alignment, align};
@@ -38,6 +39,7 @@ pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
 pub use sample::{SurfaceSample, sample_surface};
 pub use sheet::{LaserSheet, SheetError};
+pub use smooth::{Silence, SmoothCounts, SmoothError, SmoothTrajectory, Smoothing};
 pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};
 
 /// Metres from millimetres.
