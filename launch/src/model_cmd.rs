@@ -10,7 +10,6 @@ use replay::Source;
 use report::{Exhibits, Machine, Report, Run};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use wire::{Frame, Phase};
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
@@ -65,14 +64,8 @@ fn look(input: &Path) -> Result<Holds> {
     let source = Source::open(input)?;
     let Source::Recording(recording) = &source else { return Ok(Holds { laser_pictures: true, stripes: false }) };
     let stripes = recording.streams().iter().any(|stream| stream.key.starts_with("stripe/"));
-    let is_laser = |message: &replay::Message| {
-        message.key.starts_with("camera/")
-            && message.decode::<Frame>().is_ok_and(|frame| frame.light.laser && frame.header.phase != Phase::End)
-    };
-    // Laser-lit pictures come in turn with the others: a few tell.
-    const LOOKED_AT: usize = 200;
-    let frames = source.messages()?.filter_map(Result::ok).filter(|message| message.key.starts_with("camera/"));
-    let laser_pictures = frames.take(LOOKED_AT).any(|message| is_laser(&message));
+    let laser_pictures =
+        recording.streams().iter().any(|stream| stream.key.starts_with("camera/") && stream.key.ends_with("/frame"));
     if !laser_pictures && !stripes {
         bail!("{}: neither laser-lit pictures nor stripes in it: there is no shape to find", input.display());
     }

@@ -27,7 +27,10 @@ pub const KINDS: &[Kind] = &[
         source: true,
         paths: &["scene", "object", "rig"],
         takes: |_| vec![topic::run_phase().key],
-        gives: |node| vec![topic::frame(&node.instance).key, topic::truth_trajectory(&node.instance).key],
+        gives: |node| {
+            let (frame, colour) = (topic::frame(&node.instance).key, topic::colour(&node.instance).key);
+            vec![frame, colour, topic::truth_trajectory(&node.instance).key]
+        },
         defaults: defaults::<world::Setup>,
         check: |config| check(config, |_: &world::Setup| Ok::<_, String>(())),
         run: camera_sim::node::run,
@@ -53,8 +56,9 @@ pub const KINDS: &[Kind] = &[
         paths: &["file"],
         takes: |_| vec![topic::run_phase().key],
         gives: |node| {
-            let (camera, tracker) = (topic::frame(node.of("camera")).key, topic::pose(node.of("tracker")).key);
-            vec![camera, tracker, topic::calibration(node.of("rig")).key]
+            let camera = [topic::frame(node.of("camera")).key, topic::colour(node.of("camera")).key];
+            let others = [topic::pose(node.of("tracker")).key, topic::calibration(node.of("rig")).key];
+            camera.into_iter().chain(others).collect()
         },
         defaults: defaults::<replay::node::Config>,
         check: |config| check(config, replay_file),
@@ -127,7 +131,7 @@ pub const KINDS: &[Kind] = &[
         takes: |node| {
             let (camera, rig) = (node.of("camera"), node.of("rig"));
             vec![
-                topic::frame(camera).key,
+                topic::colour(camera).key,
                 topic::trajectory(camera).key,
                 topic::mesh().key,
                 topic::calibration(rig).key,
@@ -154,7 +158,7 @@ pub const KINDS: &[Kind] = &[
         about: "keeps what cannot be computed again in an MCAP file",
         // What sources send, and the stripes: the rest can be computed again.
         takes: |_| {
-            let sent = [topic::frame("*").key, topic::pose("*").key, topic::stripe("*").key];
+            let sent = [topic::colour("*").key, topic::pose("*").key, topic::stripe("*").key];
             sent.into_iter().chain([topic::calibration("*").key, topic::run_phase().key]).collect()
         },
         defaults: defaults::<record::node::Config>,
@@ -172,10 +176,10 @@ pub const KINDS: &[Kind] = &[
         inputs: &["camera", "rig"],
         takes: |node| {
             let (camera, rig) = (node.of("camera"), node.of("rig"));
-            let seen = [topic::frame(camera).key, topic::stripe(camera).key, topic::scan(camera).key];
-            let shown = [topic::trajectory(camera).key, topic::calibration(rig).key];
+            let pictures = [topic::frame(camera).key, topic::colour(camera).key, topic::stripe(camera).key];
+            let placed = [topic::scan(camera).key, topic::trajectory(camera).key, topic::calibration(rig).key];
             let made = [topic::cloud().key, topic::mesh().key, topic::textured().key];
-            seen.into_iter().chain(shown).chain(made).collect()
+            pictures.into_iter().chain(placed).chain(made).collect()
         },
         defaults: defaults::<view::Config>,
         check: |config| check(config, view::Config::check),

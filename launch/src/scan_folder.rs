@@ -16,8 +16,12 @@ pub fn unpack(recording: &Path, folder: &Path) -> Result<()> {
         let message = message?;
         let stream = |kind: &str| message.key.strip_prefix(kind).is_some_and(|rest| rest.starts_with('/'));
         if stream("camera") {
-            writer.frame(&message.decode::<Frame>()?)?;
-            frames += 1;
+            let frame: Frame = message.decode()?;
+            // An end, or an exposure whose pixels went on the other topic.
+            if !frame.data.is_empty() {
+                writer.frame(&frame)?;
+                frames += 1;
+            }
         } else if stream("tracker") {
             writer.pose(&message.decode::<Pose>()?);
             poses += 1;

@@ -123,6 +123,8 @@ fn sets(args: &Args, setup: &Setup, out: &std::path::Path) -> Vec<String> {
     sets.push(format!("record.file={}", text(&out.join("scan.mcap"))));
     if args.headless {
         sets.push("nodes.view.enabled=false".to_owned());
+        // Nobody looks at it.
+        sets.push("surface.live_every_s=0".to_owned());
     }
     sets.extend(args.sets.iter().cloned());
     sets

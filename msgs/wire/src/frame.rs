@@ -103,6 +103,19 @@ pub enum FrameError {
 }
 
 impl Frame {
+    /// What a camera sends of an exposure: on its topic `frame`, and on its topic `colour`. A picture that the lamp alone
+    /// has lit is for colour; on `frame` it is only told, without its pixels, so that whoever counts exposures sees it.
+    /// The end goes on both.
+    pub fn by_topic(self) -> (Self, Option<Self>) {
+        if self.header.is_end() {
+            (self.clone(), Some(self))
+        } else if self.light.lamp && !self.light.laser {
+            (Self { data: Bulk::default(), ..self }, Some(self))
+        } else {
+            (self, None)
+        }
+    }
+
     /// Refuses a picture whose size contradicts its header.
     pub fn check(&self) -> Result<(), FrameError> {
         let (width, height, stride, format) = (self.width, self.height, self.stride, self.format);

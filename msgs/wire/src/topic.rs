@@ -72,8 +72,10 @@ macro_rules! topics {
 }
 
 topics! {
-    /// Pictures of one camera.
+    /// The exposures of one camera; one that is for colour comes without its pixels ([`Frame::by_topic`]).
     frame(camera) -> Frame = "camera/{camera}/frame", Frame;
+    /// Pictures of one camera that the lamp alone has lit: a reader of these is spared all others.
+    colour(camera) -> Frame = "camera/{camera}/colour", Frame;
     /// Readings of one tracker.
     pose(tracker) -> Pose = "tracker/{tracker}/pose", Stream;
     /// Laser lines found in the pictures of one camera.

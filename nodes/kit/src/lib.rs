@@ -35,5 +35,5 @@ pub use bus::{Bus, BusConfig, Presence, RawMessage, RawSubscriber};
 pub use lifeline::Stopper;
 pub use node::Node;
 pub use pace::{Go, Pace};
-pub use ports::{Input, Output};
+pub use ports::{Input, Output, Pictures};
 pub use spec::NodeSpec;

@@ -4,7 +4,7 @@ use crate::health::Account;
 use crate::lifeline::Stopper;
 use crate::log::{self, Lines};
 use crate::pace::{Go, Pace, Window, system_nanos, until};
-use crate::ports::{Input, Output};
+use crate::ports::{Input, Output, Pictures};
 use crate::spec::NodeSpec;
 use anyhow::{Context as _, bail};
 use bus::{Bus, RawSubscriber, Token};
@@ -124,6 +124,12 @@ impl Node {
     /// Opens an output.
     pub fn output<M: Message>(&mut self, topic: &Topic<M>) -> anyhow::Result<Output<M>> {
         Ok(Output::new(self.bus.publisher(topic)?, self.account.sent.clone()))
+    }
+
+    /// Opens the outputs of a camera.
+    pub fn pictures(&mut self, camera: &str) -> anyhow::Result<Pictures> {
+        let (frames, colours) = (self.output(&topic::frame(camera))?, self.output(&topic::colour(camera))?);
+        Ok(Pictures { frames, colours })
     }
 
     /// Waits for the calibration of a handset; fails when the node is told to stop first.

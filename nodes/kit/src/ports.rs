@@ -3,7 +3,7 @@
 use bus::{BusError, InputCounts, Publisher, Subscriber};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use wire::Message;
+use wire::{Frame, Message};
 
 /// The account of one input, as the node's health reports it.
 pub(crate) type SharedCounts = Arc<Mutex<InputCounts>>;
@@ -61,5 +61,20 @@ impl<M: Message> Output<M> {
         self.publisher.send(message)?;
         self.sent.fetch_add(1, Ordering::Relaxed);
         Ok(())
+    }
+}
+
+/// Sends the pictures of one camera.
+pub struct Pictures {
+    pub(crate) frames: Output<Frame>,
+    pub(crate) colours: Output<Frame>,
+}
+
+impl Pictures {
+    /// Sends a picture where it belongs ([`Frame::by_topic`]).
+    pub fn send(&mut self, picture: Frame) -> Result<(), BusError> {
+        let (frame, colour) = picture.by_topic();
+        self.frames.send(frame)?;
+        colour.map_or(Ok(()), |colour| self.colours.send(colour))
     }
 }

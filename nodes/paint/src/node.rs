@@ -41,7 +41,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let bound_bytes = config.memory_mib << 20;
     let camera = node.spec().source_of("camera").to_owned();
     let mut inputs = Inputs {
-        frames: node.stream(&topic::frame(&camera), FRAMES)?,
+        frames: node.stream(&topic::colour(&camera), FRAMES)?,
         way: node.stream(&topic::trajectory(&camera), TRAJECTORIES)?,
         meshes: node.input(&topic::mesh(), 4)?,
     };
@@ -79,6 +79,10 @@ fn take(
             scan.way.push(sample.into());
         });
         scan.way_ended |= trajectory.header.is_end();
+        // Colour may come seldom, or never: a fast source need not wait for it.
+        if !trajectory.header.is_end() {
+            node.finished(&trajectory.header)?;
+        }
     }
     while let Some(frame) = inputs.frames.next() {
         renew(scan, &frame.header, bound_bytes);
@@ -87,7 +91,7 @@ fn take(
             scan.frames_ended = true;
             continue;
         }
-        if frame.light.lamp && !frame.light.laser && frame.header.phase != Phase::Aim {
+        if frame.header.phase != Phase::Aim {
             match painter.crop(&frame) {
                 Ok(picture) => scan.store.push(picture),
                 Err(refusal) => node.refuse(&refusal.to_string(), 1),

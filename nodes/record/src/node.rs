@@ -9,9 +9,9 @@ use kit::{Node, RawMessage, RawSubscriber};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use wire::{Frame, Header, Phase, codec};
+use wire::{Header, Phase, codec, topic};
 
-/// Which pictures are kept.
+/// Which pictures are kept: those that the lamp alone has lit, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pictures {
@@ -44,19 +44,18 @@ impl Default for Config {
 }
 
 /// Keys that are kept, and how many messages may wait.
-const KEPT: [(&str, usize); 5] = [
-    ("rig/*/calibration", 8),
-    ("run/phase", 64),
-    ("tracker/*/pose", 1 << 14),
-    ("stripe/*/stripe", 1 << 12),
-    ("camera/*/frame", 48),
-];
+fn kept(pictures: Pictures) -> Vec<(String, usize)> {
+    let told = [(topic::calibration("*").key, 8), (topic::run_phase().key, 64)];
+    let measured = [(topic::pose("*").key, 1 << 14), (topic::stripe("*").key, 1 << 12), (topic::colour("*").key, 48)];
+    let all = (pictures == Pictures::All).then(|| (topic::frame("*").key, 48));
+    told.into_iter().chain(measured).chain(all).collect()
+}
 
 /// Records until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
-    let inputs = KEPT.map(|(key, depth)| node.raw(key, depth));
-    let mut inputs: Vec<RawSubscriber> = inputs.into_iter().collect::<anyhow::Result<_>>()?;
+    let inputs = kept(config.pictures).into_iter().map(|(key, depth)| node.raw(&key, depth));
+    let mut inputs: Vec<RawSubscriber> = inputs.collect::<anyhow::Result<_>>()?;
     let notes = [("limn", env!("CARGO_PKG_VERSION")), ("configuration", &config.rig_config)];
     let notes: BTreeMap<String, String> = notes.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     let mut recorder = Recorder::create(&config.file, config.packing.clone(), &notes)?;
@@ -65,15 +64,15 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     while node.wait() {
         for input in &mut inputs {
             while let Some(message) = input.next() {
-                let Some(header) = keep(&mut node, &mut recorder, &config, &message)? else { continue };
-                let is_stream = message.key.starts_with("camera/") || message.key.starts_with("tracker/");
+                let Some(header) = keep(&mut node, &mut recorder, &message)? else { continue };
+                let is_stream = ["camera/", "stripe/", "tracker/"].iter().any(|kind| message.key.starts_with(kind));
                 if is_stream && begun.insert(message.key.clone()) {
                     ended.remove(&message.key);
                 }
                 if is_stream && header.is_end() {
                     ended.insert(message.key.clone());
                 }
-                if message.key.starts_with("camera/") && !header.is_end() {
+                if is_stream && !header.is_end() {
                     node.finished(&header)?;
                 }
                 if is_stream && header.is_end() && ended.len() == begun.len() {
@@ -92,23 +91,13 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
 fn keep(
     node: &mut Node,
     recorder: &mut Recorder,
-    config: &Config,
     message: &RawMessage,
 ) -> anyhow::Result<Option<Header>> {
     let Ok(header) = codec::header(&message.bytes) else {
         node.refuse("message without a header", 1);
         return Ok(None);
     };
-    let is_frame = message.schema == codec::schema::<Frame>();
-    let wanted = match (is_frame, config.pictures) {
-        (false, _) | (true, Pictures::All) => true,
-        (true, Pictures::Lamp) => {
-            header.is_end() || codec::decode::<Frame>(&message.bytes).is_ok_and(|frame| frame.light.lamp)
-        }
-    };
-    if wanted {
-        recorder.write(&message.key, &message.schema, header.stamp_nanos, &message.bytes)?;
-    }
+    recorder.write(&message.key, &message.schema, header.stamp_nanos, &message.bytes)?;
     Ok(Some(header))
 }
 

@@ -8,7 +8,7 @@ use wire::{Frame, Header, Phase, Pose, topic};
 /// What the streams of a scan folder are called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Names {
-    /// camera/…/frame.
+    /// camera/…/frame and camera/…/colour.
     pub camera: String,
     /// tracker/…/pose.
     pub tracker: String,
@@ -40,7 +40,7 @@ impl FolderScan {
         &self.folder
     }
 
-    /// Calibration, then poses and frames by their stamps on the camera's clock (a pose before a frame of the same
+    /// Calibration, then poses and frames (on their two topics) by their stamps on the camera's clock (a pose before a frame of the same
     /// moment), then the end of both streams. A picture that cannot be read is an error in its place; its number is left
     /// out, so that the gap is seen downstream.
     pub fn messages(&self) -> Result<impl Iterator<Item = Result<Message, ReplayError>> + '_, ReplayError> {
@@ -52,18 +52,22 @@ impl FolderScan {
         let offset_nanos = calibration.pose_offset_nanos;
         let first = Message::encode(&topic::calibration(&self.names.rig).key, &calibration);
         let (mut pose, mut frame) = (0, 0);
+        let mut colour = None;
         let body = std::iter::from_fn(move || {
+            if let Some(colour) = colour.take() {
+                return Some(Ok(colour));
+            }
             let next_pose = self.folder.poses.get(pose);
             let next_frame = self.folder.frames.get(frame);
             let pose_time = next_pose.map(|p| p.header.stamp_nanos.saturating_add(offset_nanos));
             match (pose_time, next_frame) {
                 (Some(time), Some(entry)) if time > entry.stamp_nanos => {
                     frame += 1;
-                    self.frame(frame - 1)
+                    self.frame(frame - 1, &mut colour)
                 }
                 (None, Some(_)) => {
                     frame += 1;
-                    self.frame(frame - 1)
+                    self.frame(frame - 1, &mut colour)
                 }
                 (Some(_), _) => {
                     pose += 1;
@@ -75,9 +79,13 @@ impl FolderScan {
         Ok(std::iter::once(Ok(first)).chain(body).chain(self.ends().into_iter().map(Ok)))
     }
 
-    fn frame(&self, index: usize) -> Option<Result<Message, ReplayError>> {
+    fn frame(&self, index: usize, for_colour: &mut Option<Message>) -> Option<Result<Message, ReplayError>> {
         let frame = self.folder.frame(index)?;
-        Some(frame.map(|f| Message::encode(&topic::frame(&self.names.camera).key, &f)).map_err(ReplayError::from))
+        Some(frame.map_err(ReplayError::from).map(|picture| {
+            let (frame, colour) = picture.by_topic();
+            *for_colour = colour.map(|colour| Message::encode(&topic::colour(&self.names.camera).key, &colour));
+            Message::encode(&topic::frame(&self.names.camera).key, &frame)
+        }))
     }
 
     /// The tables tell no phase of a pose: it is that of the picture that follows it.
@@ -102,8 +110,9 @@ impl FolderScan {
         let frame_header = end(folder.frames.last().map(|f| f.stamp_nanos), folder.frames.len());
         let pose = folder.poses.last().map(|p| Pose { header: pose_header, ..p.clone() });
         let pose = pose.map(|p| Message::encode(&topic::pose(&self.names.tracker).key, &p));
-        let frame = Message::encode(&topic::frame(&self.names.camera).key, &empty_frame(frame_header));
-        pose.into_iter().chain([frame]).collect()
+        let camera = &self.names.camera;
+        let end = |key: &str| Message::encode(key, &empty_frame(frame_header));
+        pose.into_iter().chain([end(&topic::frame(camera).key), end(&topic::colour(camera).key)]).collect()
     }
 }
 

@@ -99,19 +99,12 @@ impl Outputs {
         message: &crate::Message,
         go: &Go,
     ) -> anyhow::Result<Option<Header>> {
-        let Some((kind, instance)) =
-            message.key.split_once('/').and_then(|(kind, rest)| Some((kind, rest.split('/').next()?)))
-        else {
-            return Ok(None);
-        };
+        let [kind, instance, stream] = message.key.split('/').collect::<Vec<_>>()[..] else { return Ok(None) };
         let header = match kind {
-            "camera" => {
-                let frame: Frame = message.decode()?;
-                // Stripes that are played stand for the laser-lit pictures.
-                if config.stripes && frame.light.laser {
-                    return Ok(None);
-                }
-                relay(&mut self.frames, node, topic::frame(instance), frame, go)?
+            // Stripes that are played stand for the laser-lit pictures.
+            "camera" if !(config.stripes && stream == "frame") => {
+                let topic = if stream == "frame" { topic::frame(instance) } else { topic::colour(instance) };
+                relay(&mut self.frames, node, topic, message.decode()?, go)?
             }
             "tracker" => relay(&mut self.poses, node, topic::pose(instance), message.decode()?, go)?,
             "stripe" if config.stripes => {
@@ -138,18 +131,19 @@ impl Outputs {
     fn end(&mut self, node: &mut Node, go: &Go) -> anyhow::Result<()> {
         for (key, header) in std::mem::take(&mut self.open) {
             let header = Header { scan: go.scan, phase: Phase::End, stamp_nanos: header.stamp_nanos + 1, ..header };
-            let instance = key.split('/').nth(1).unwrap_or_default().to_owned();
-            match key.split('/').next() {
-                Some("camera") => {
-                    relay(&mut self.frames, node, topic::frame(&instance), crate::folder::empty_frame(header), go)?;
+            let [kind, instance, stream] = key.split('/').collect::<Vec<_>>()[..] else { continue };
+            match (kind, stream) {
+                ("camera", "frame") => {
+                    relay(&mut self.frames, node, topic::frame(instance), crate::folder::empty_frame(header), go)?
                 }
-                Some("tracker") => {
-                    relay(&mut self.poses, node, topic::pose(&instance), crate::folder::no_pose(header), go)?;
+                ("camera", _) => {
+                    relay(&mut self.frames, node, topic::colour(instance), crate::folder::empty_frame(header), go)?
                 }
-                _ => {
-                    relay(&mut self.stripes, node, topic::stripe(&instance), crate::folder::no_stripe(header), go)?;
+                ("tracker", _) => {
+                    relay(&mut self.poses, node, topic::pose(instance), crate::folder::no_pose(header), go)?
                 }
-            }
+                _ => relay(&mut self.stripes, node, topic::stripe(instance), crate::folder::no_stripe(header), go)?,
+            };
         }
         Ok(())
     }

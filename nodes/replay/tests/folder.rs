@@ -69,9 +69,11 @@ fn calibration_first_then_by_time_then_the_ends() {
     ];
     assert_eq!(order, expected);
     assert_eq!(messages[0].decode::<Calibration>().unwrap().pose_offset_nanos, 15_000_000);
-    let frame = messages[3].decode::<Frame>().unwrap();
-    assert_eq!((frame.light.lamp, frame.data[0], frame.header.seq), (true, 1, 1));
-    assert_eq!(messages[3].key, topic::frame("left").key);
+    let (told, colour) = (&messages[3], &messages[4]);
+    assert_eq!((&told.key, &colour.key), (&topic::frame("left").key, &topic::colour("left").key));
+    let (told, colour) = (told.decode::<Frame>().unwrap(), colour.decode::<Frame>().unwrap());
+    assert!(told.light.lamp && told.data.is_empty());
+    assert_eq!((colour.light.lamp, colour.data[0], colour.header.seq), (true, 1, 1));
     assert_eq!(messages[2].decode::<Pose>().unwrap().header.phase, Phase::Both);
     let ends = &messages[9..];
     assert!(ends[0].decode::<Pose>().unwrap().header.is_end() && ends[1].decode::<Frame>().unwrap().header.is_end());

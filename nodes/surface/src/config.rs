@@ -17,7 +17,7 @@ pub struct Config {
     pub fill_holes_mm: f64,
     /// In the final mesh, loose pieces whose bounding box has a shorter diagonal than this are dropped.
     pub drop_islands_mm: f64,
-    /// Seconds between two live surfaces, at least: they are for the eye, and wait until nothing else is to do.
+    /// Seconds between two live surfaces, at least: they are for the eye, and wait until nothing else is to do. 0: none.
     pub live_every_s: f64,
 }
 
@@ -50,7 +50,7 @@ impl Config {
         automatic_or("radius_mm", self.radius_mm, 0.05, 1000.0, "0 (automatic) or 0.05 to 1000 mm")?;
         automatic_or("fill_holes_mm", self.fill_holes_mm, 0.0, 1e6, "0 (none) to 1000000 mm")?;
         automatic_or("drop_islands_mm", self.drop_islands_mm, 0.0, 1e6, "0 (none) to 1000000 mm")?;
-        automatic_or("live_every_s", self.live_every_s, 0.05, 1e6, "0.05 s or more")?;
+        automatic_or("live_every_s", self.live_every_s, 0.05, 1e6, "0 (none) or 0.05 s and more")?;
         let ratio = self.radius_mm / self.cell_mm;
         if ratio.is_finite() && ratio > 0.0 && !(2.0..=24.0).contains(&ratio) {
             let wanted = "between 2 and 24 times cell_mm, or 0 (automatic)";

@@ -32,7 +32,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             node.finished(&cloud.header)?;
         }
         // The live surface is for the eye: it waits until nothing else is to do.
-        if changed && published.elapsed() >= live_every {
+        if changed && !live_every.is_zero() && published.elapsed() >= live_every {
             meshes.send(surfer.live_mesh())?;
             (published, changed) = (Instant::now(), false);
         }

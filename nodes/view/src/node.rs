@@ -10,6 +10,7 @@ use wire::{Cloud, Frame, Health, LogLine, Mesh, Model, Phase, Scan, Stripe, Traj
 
 struct Inputs {
     frames: Input<Frame>,
+    colours: Input<Frame>,
     stripes: Input<Stripe>,
     trajectories: Input<Trajectory>,
     scans: Input<Scan>,
@@ -24,6 +25,7 @@ impl Inputs {
     fn open(node: &mut Node, camera: &str) -> anyhow::Result<Self> {
         Ok(Self {
             frames: node.glimpse(&topic::frame(camera))?,
+            colours: node.glimpse(&topic::colour(camera))?,
             stripes: node.glimpse(&topic::stripe(camera))?,
             trajectories: node.glimpse(&topic::trajectory(camera))?,
             scans: node.glimpse(&topic::scan(camera))?,
@@ -116,8 +118,10 @@ fn fast_part(
         show::at(rec, &trajectory.header);
         show::trajectory(rec, &trajectory, trail)?;
     }
-    if let Some(picture) = inputs.frames.newest().and_then(|frame| picture::shrink(&frame, config.picture_width_px)) {
-        show::picture(rec, &picture)?;
+    for picture in [inputs.colours.newest(), inputs.frames.newest()].into_iter().flatten() {
+        if let Some(picture) = picture::shrink(&picture, config.picture_width_px) {
+            show::picture(rec, &picture)?;
+        }
     }
     if let Some(stripe) = inputs.stripes.newest() {
         show::stripe(rec, &stripe, shrunk_by)?;

@@ -42,7 +42,7 @@ impl ScanFolderWriter {
     pub fn frame(&mut self, frame: &Frame) -> Result<(), FormatError> {
         let header = frame.header;
         let Some(phase) = phase_word(header.phase) else { return Ok(()) };
-        let file = format!("frames/{:06}.png", header.seq);
+        let file = format!("frames/{:06}.png", self.frames.len());
         image_file::write_frame(&self.folder.join(&file), frame)?;
         let mut line = vec![("stamp_s", seconds::text(header.stamp_nanos)), ("phase", phase.into()), ("file", file)];
         if frame.light != default_light(header.phase) {
