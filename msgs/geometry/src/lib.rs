@@ -39,7 +39,7 @@ pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
 pub use sample::{SurfaceSample, sample_surface};
 pub use sheet::{LaserSheet, SheetError};
-pub use smooth::{Silence, SmoothCounts, SmoothError, SmoothTrajectory, Smoothing};
+pub use smooth::{FixedLagSmoother, Silence, SmoothCounts, SmoothError, SmoothTrajectory, Smoothing, Wait};
 pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};
 
 /// Metres from millimetres.

@@ -78,13 +78,15 @@ impl Factor {
         let rows = &self.0;
         for i in 0..rows.len() {
             for back in 1..=i.min(3) {
-                x[i] = x[i] - x[i - back] * rows[i][back];
+                let known = x[i - back] * rows[i][back];
+                x[i] -= known;
             }
         }
         for i in (0..rows.len()).rev() {
             x[i] /= rows[i][0];
             for ahead in 1..=(rows.len() - 1 - i).min(3) {
-                x[i] = x[i] - x[i + ahead] * rows[i + ahead][ahead];
+                let known = x[i + ahead] * rows[i + ahead][ahead];
+                x[i] -= known;
             }
         }
     }

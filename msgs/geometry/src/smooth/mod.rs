@@ -14,7 +14,7 @@
 //! use geometry::{SmoothTrajectory, Smoothing, TimedPose};
 //! use nalgebra::Isometry3;
 //! let reading = |i: i64| {
-//!     let (t, jitter) = (i as f64 * 0.01, [1e-3, -2e-3, 0.5e-3, 1.5e-3, -1e-3][(i * 7 % 5) as usize]);
+//!     let (t, jitter) = (i as f64 * 0.01, 4e-3 * ((i * i * 7919 % 1009) as f64 / 1009.0 - 0.5));
 //!     let pose = Isometry3::translation(0.1 * t.sin() + jitter, 0.0, 0.2);
 //!     TimedPose { stamp_nanos: i * 10_000_000, pose, position_sigma_m: 1e-3, rotation_sigma_rad: 0.01 }
 //! };
@@ -28,13 +28,16 @@
 mod band;
 mod basis;
 mod choose;
+mod fixed_lag;
 mod order;
 mod outliers;
+mod part;
 mod readings;
 mod run;
 mod track;
 mod trajectory;
 
+pub use fixed_lag::{FixedLagSmoother, Wait};
 pub use trajectory::SmoothTrajectory;
 
 use serde::{Deserialize, Serialize};

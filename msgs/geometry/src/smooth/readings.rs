@@ -41,6 +41,11 @@ pub(super) fn turn(value: &Vector4<f64>, off: &Vector4<f64>) -> Vector3<f64> {
     2.0 * (conjugate * nalgebra::Quaternion::from(*off)).imag() / value.norm_squared()
 }
 
+/// Of one axis, when three are known.
+pub(super) fn rms(axes: &Vector3<f64>) -> f64 {
+    (axes.norm_squared() / 3.0).sqrt()
+}
+
 fn samples<const D: usize>(
     readings: &[TimedPose],
     sigma: impl Fn(&TimedPose) -> f64,

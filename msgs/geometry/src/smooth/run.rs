@@ -58,6 +58,12 @@ impl<const D: usize> Run<D> {
         Some(Self { samples, knot_nanos, first_knot, controls, origin })
     }
 
+    /// The lambda at which a sway of so many Hz comes out halved: its sixth power against the readings between two knots.
+    pub(super) fn lambda_of(&self, hz: f64) -> f64 {
+        let knots = (self.controls - 3) as f64;
+        self.samples.len() as f64 / knots / (std::f64::consts::TAU * hz * self.knot_nanos as f64 * 1e-9).powi(6)
+    }
+
     fn place(&self, stamp_nanos: i64) -> (usize, [f64; 4]) {
         let place = Place::of(stamp_nanos, self.knot_nanos);
         ((place.knot - self.first_knot) as usize, place.weights())

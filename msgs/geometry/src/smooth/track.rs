@@ -28,7 +28,7 @@ struct Stretch<const D: usize> {
 /// Fewer readings are no run.
 pub(super) const LEAST_READINGS: usize = 8;
 /// The spline goes on across a shorter silence, though it is not asked there: what lies before it tells of what follows.
-const SPLIT_NANOS: u64 = 1_000_000_000;
+pub(super) const SPLIT_NANOS: u64 = 1_000_000_000;
 
 impl<const D: usize> Track<D> {
     /// `axes` turns a value of the spline and a residual into the error along three axes. `None` when there is no run.
@@ -45,10 +45,15 @@ impl<const D: usize> Track<D> {
             // Readings that all but coincide hold no curve.
             .filter(|run| run.solve(1.0).is_some())
             .collect();
+        runs.iter_mut().for_each(|run| outliers::mark_gross(run, config.outlier_sigmas, 0.0));
         let lambda = choose(&runs)?;
-        runs.iter_mut().for_each(|run| outliers::mark(run, lambda, config.outlier_sigmas));
-        let marked = |runs: &[Run<D>]| runs.iter().flat_map(|run| &run.samples).filter(|s| !s.active).count();
-        let lambda = if marked(&runs) > 0 { choose(&runs)? } else { lambda };
+        let left_out =
+            |runs: &[Run<D>]| -> Vec<bool> { runs.iter().flat_map(|r| &r.samples).map(|s| !s.active).collect() };
+        let gross = left_out(&runs);
+        for run in &mut runs {
+            outliers::mark(run, lambda, config.outlier_sigmas, 0.0);
+        }
+        let lambda = if left_out(&runs) == gross { lambda } else { choose(&runs)? };
         let (mut squares, mut own, mut used) = (Vector3::zeros(), 0.0, 0);
         let mut stretches = Vec::with_capacity(runs.len());
         let mut stamps = Vec::with_capacity(readings);

@@ -1,6 +1,6 @@
 //! The smooth way through all readings of a scan.
 
-use super::readings::{is_finite, positions, rotations, turn};
+use super::readings::{is_finite, positions, rms, rotations, turn};
 use super::track::{LEAST_READINGS, Track};
 use super::{Silence, SmoothCounts, SmoothError, Smoothing, order};
 use crate::TimedPose;
@@ -114,10 +114,6 @@ impl SmoothTrajectory {
     pub fn counts(&self) -> SmoothCounts {
         self.counts
     }
-}
-
-fn rms(axes: &Vector3<f64>) -> f64 {
-    (axes.norm_squared() / 3.0).sqrt()
 }
 
 /// Without what is not finite and what goes backwards in time.

@@ -1,0 +1,237 @@
+//! The smooth way while the readings still come.
+
+use super::part::{Part, WINDOW_NANOS, around};
+use super::readings::{is_finite, positions, rotations, turn};
+use super::track::Track;
+use super::{SmoothError, Smoothing};
+use crate::{NoPose, TimedPose, TrajectoryBuffer};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+
+/// How far behind the newest reading a pose is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wait {
+    /// The answer waits for a reading so long behind the moment: 0 is the newest edge, where the pose is least sure.
+    pub lag_nanos: i64,
+    /// The answer may come from readings up to so long before that, when they tell the pose better than the reading that
+    /// is waited for would alone.
+    pub predict_nanos: i64,
+}
+
+/// Takes readings one by one, and tells the smooth pose at moments near the newest.
+///
+/// What it answers is a function of the readings' stamps alone: the answer is computed from the readings up to the first
+/// one that allows it, whether more are there already or not. So batches, replays and late starts give the same bytes.
+#[derive(Debug, Clone)]
+pub struct FixedLagSmoother {
+    config: Smoothing,
+    readings: Vec<Reading>,
+    tunings: Vec<Tuning>,
+    taken: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    pose: TimedPose,
+    /// When the rotation was sampled; `None` when that was not later than the one before.
+    rotation_nanos: Option<i64>,
+}
+
+/// How stiff the splines are from a moment on, and how noisy the readings.
+#[derive(Debug, Clone, Copy)]
+struct Tuning {
+    stamp_nanos: i64,
+    position: Part,
+    rotation: Part,
+}
+
+/// Whether there will be a better moment to answer.
+#[derive(Debug, Clone, Copy)]
+enum Moment {
+    Early,
+    Due,
+}
+
+/// A smooth pose; the variance is the larger of position's and rotation's, in units of a reading's.
+struct Smooth {
+    pose: TimedPose,
+    variance: f64,
+    beside_outlier: bool,
+}
+
+/// Both are chosen anew from the readings of so long...
+const TUNING_NANOS: i64 = 4_000_000_000;
+/// ... so often,
+const TUNE_EVERY_NANOS: i64 = 500_000_000;
+/// and at these counts of readings, so that the first frames are smooth too.
+const FIRST_TUNINGS: [u64; 4] = [16, 32, 64, 128];
+/// A pose that is answered before the reading behind it has come is at least as sure as one between two readings: on a
+/// straight line its variance is 1 at either and 1/2 half-way, 2/3 in the mean.
+const EARLY_VARIANCE: f64 = 2.0 / 3.0;
+/// A smooth pose that is less sure than a reading gives way to the readings around it,
+const MOST_VARIANCE: f64 = 1.0;
+/// unless one of them is an outlier; then it stands up to here.
+const MOST_BESIDE_OUTLIER: f64 = 100.0;
+
+impl FixedLagSmoother {
+    /// Without readings.
+    pub fn new(config: Smoothing) -> Result<Self, SmoothError> {
+        config.check()?;
+        Ok(Self { config, readings: Vec::new(), tunings: Vec::new(), taken: 0 })
+    }
+
+    /// Takes a reading whose rotation was sampled so long before its position; refuses one that is not finite or not
+    /// later than the last (`false`).
+    pub fn push(&mut self, reading: &TimedPose, rotation_lag_nanos: i64) -> bool {
+        let stamp_nanos = reading.stamp_nanos;
+        let last = self.readings.last().copied();
+        if !is_finite(reading) || last.is_some_and(|last| stamp_nanos <= last.pose.stamp_nanos) {
+            return false;
+        }
+        let turned = stamp_nanos.saturating_sub(rotation_lag_nanos);
+        let older = self.readings.iter().rev().find_map(|r| r.rotation_nanos);
+        let rotation_nanos = older.is_none_or(|older| turned > older).then_some(turned);
+        self.readings.push(Reading { pose: *reading, rotation_nanos });
+        self.taken += 1;
+        let period = |stamp_nanos: i64| stamp_nanos.div_euclid(TUNE_EVERY_NANOS);
+        let crossed = last.is_some_and(|last| period(last.pose.stamp_nanos) != period(stamp_nanos));
+        if self.taken > FIRST_TUNINGS[0] && crossed || FIRST_TUNINGS.contains(&self.taken) {
+            self.tune();
+        }
+        true
+    }
+
+    fn tune(&mut self) {
+        let Some(stamp_nanos) = self.newest() else { return };
+        let from = stamp_nanos.saturating_sub(TUNING_NANOS);
+        let first = self.readings.partition_point(|r| r.pose.stamp_nanos < from);
+        let (position, rotation) = self.rows(first, self.readings.len());
+        let position = Track::fit(positions(&position), &self.config, |_, off| *off);
+        let rotation = Track::fit(rotations(&rotation), &self.config, turn);
+        if let (Some(position), Some(rotation)) = (position, rotation) {
+            let (position, rotation) = (Part::tuned(&position), Part::tuned(&rotation));
+            self.tunings.push(Tuning { stamp_nanos, position, rotation });
+        }
+    }
+
+    /// The stamp of the newest reading.
+    pub fn newest(&self) -> Option<i64> {
+        self.readings.last().map(|r| r.pose.stamp_nanos)
+    }
+
+    /// The stamp of the oldest reading that is kept.
+    pub fn oldest(&self) -> Option<i64> {
+        self.readings.first().map(|r| r.pose.stamp_nanos)
+    }
+
+    /// Forgets what no pose at or behind a moment needs.
+    pub fn forget_before(&mut self, stamp_nanos: i64) {
+        let from = stamp_nanos.saturating_sub(TUNING_NANOS + WINDOW_NANOS);
+        let first = self.readings.partition_point(|r| r.pose.stamp_nanos < from).saturating_sub(1);
+        self.readings.drain(..first);
+        self.tunings.drain(..self.tunings.partition_point(|t| t.stamp_nanos < from).saturating_sub(1));
+    }
+
+    /// The pose at a moment. Its sigmas are those of the white noise that is left, together with what the tracker states
+    /// beyond its white noise. [`NoPose::After`]: more readings are needed.
+    pub fn at(&self, stamp_nanos: i64, wait: &Wait) -> Result<TimedPose, NoPose> {
+        let until = stamp_nanos.saturating_add(wait.lag_nanos);
+        let from = until.saturating_sub(wait.predict_nanos);
+        for last in self.readings.partition_point(|r| r.pose.stamp_nanos < from)..self.readings.len() {
+            let reading = &self.readings[last];
+            let turned = reading.rotation_nanos.is_some_and(|turned| turned >= until);
+            if reading.pose.stamp_nanos >= until && turned {
+                return self.answer(stamp_nanos, last + 1, Moment::Due);
+            }
+            // No attempts without end when rotations have stopped coming.
+            if reading.pose.stamp_nanos <= until.saturating_add(WINDOW_NANOS) {
+                match self.answer(stamp_nanos, last + 1, Moment::Early) {
+                    Err(NoPose::After) => {}
+                    early => return early,
+                }
+            }
+        }
+        Err(NoPose::After)
+    }
+
+    /// The pose at a moment when no more readings will come.
+    pub fn at_end(&self, stamp_nanos: i64) -> Result<TimedPose, NoPose> {
+        if self.newest().is_none_or(|newest| newest < stamp_nanos) {
+            return Err(NoPose::After);
+        }
+        self.answer(stamp_nanos, self.readings.len(), Moment::Due)
+    }
+
+    /// From the readings before index `end`.
+    fn answer(&self, stamp_nanos: i64, end: usize, moment: Moment) -> Result<TimedPose, NoPose> {
+        let from = stamp_nanos.saturating_sub(WINDOW_NANOS);
+        // One more, so that a silence before the moment is seen as one.
+        let first = self.readings.partition_point(|r| r.pose.stamp_nanos < from).saturating_sub(1).min(end);
+        let (position, rotation) = self.rows(first, end);
+        let straight = between(&position, &rotation, stamp_nanos, self.config.most_gap_nanos());
+        if let Err(NoPose::Before | NoPose::Gap) = straight {
+            return straight;
+        }
+        match (moment, self.smooth(&position, &rotation, stamp_nanos)) {
+            (Moment::Early, Some(smooth)) if smooth.variance <= EARLY_VARIANCE => Ok(smooth.pose),
+            (Moment::Early, _) => Err(NoPose::After),
+            (Moment::Due, Some(smooth)) if smooth.variance <= MOST_VARIANCE => Ok(smooth.pose),
+            (Moment::Due, Some(smooth)) if smooth.beside_outlier => {
+                if smooth.variance <= MOST_BESIDE_OUTLIER {
+                    Ok(smooth.pose)
+                } else {
+                    Err(NoPose::Gap)
+                }
+            }
+            (Moment::Due, _) => straight,
+        }
+    }
+
+    /// `None` before anything is known of the noise, or when the readings are too few.
+    fn smooth(&self, position: &[TimedPose], rotation: &[TimedPose], stamp_nanos: i64) -> Option<Smooth> {
+        let newest = position.last()?;
+        let known = self.tunings.partition_point(|t| t.stamp_nanos <= newest.stamp_nanos);
+        let tuning = self.tunings.get(known.checked_sub(1)?)?;
+        let place = tuning.position.solve(around(positions(position), stamp_nanos), stamp_nanos, &self.config)?;
+        let turned = tuning.rotation.solve(around(rotations(rotation), stamp_nanos), stamp_nanos, &self.config)?;
+        let rotation = UnitQuaternion::from_quaternion(Quaternion::from(turned.value));
+        let pose = TimedPose {
+            stamp_nanos,
+            pose: Isometry3::from_parts(Translation3::from(place.value), rotation),
+            position_sigma_m: tuning.position.sigma(place.variance, newest.position_sigma_m),
+            rotation_sigma_rad: tuning.rotation.sigma(turned.variance, newest.rotation_sigma_rad),
+        };
+        let variance = place.variance.max(turned.variance);
+        Some(Smooth { pose, variance, beside_outlier: place.beside_outlier || turned.beside_outlier })
+    }
+
+    /// Positions and rotations of some readings, each with its own stamp.
+    fn rows(&self, first: usize, end: usize) -> (Vec<TimedPose>, Vec<TimedPose>) {
+        let readings = &self.readings[first..end];
+        let turned = |r: &Reading| r.rotation_nanos.map(|stamp_nanos| TimedPose { stamp_nanos, ..r.pose });
+        (readings.iter().map(|r| r.pose).collect(), readings.iter().filter_map(turned).collect())
+    }
+}
+
+/// Without smoothing: each part between its two neighbours.
+fn between(
+    position: &[TimedPose],
+    rotation: &[TimedPose],
+    stamp_nanos: i64,
+    gap_nanos: i64,
+) -> Result<TimedPose, NoPose> {
+    let at = |row: &[TimedPose]| {
+        let mut buffer = TrajectoryBuffer::default();
+        let near = row.partition_point(|r| r.stamp_nanos < stamp_nanos).saturating_sub(1);
+        row[near..].iter().take(2).for_each(|reading| {
+            buffer.push(*reading);
+        });
+        buffer.at(stamp_nanos, gap_nanos)
+    };
+    match (at(position), at(rotation)) {
+        (Ok(place), Ok(turned)) => {
+            let pose = Isometry3::from_parts(place.pose.translation, turned.pose.rotation);
+            Ok(TimedPose { pose, rotation_sigma_rad: turned.rotation_sigma_rad, ..place })
+        }
+        (Err(NoPose::After), Err(other)) | (Err(other), _) | (_, Err(other)) => Err(other),
+    }
+}
