@@ -47,6 +47,7 @@ pub mod plan;
 pub mod planned;
 mod process;
 mod record_cmd;
+mod recorded;
 mod replay_cmd;
 pub mod run;
 pub mod running;

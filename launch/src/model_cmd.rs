@@ -3,10 +3,10 @@
 use crate::demo::table;
 use crate::nodes;
 use crate::plan::Plan;
+use crate::recorded::Recorded;
 use crate::run::{self, Course, Harvest};
 use anyhow::{Context as _, Result, bail};
 use clap::Args as ClapArgs;
-use replay::Source;
 use report::{Exhibits, Machine, Report, Run};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -38,11 +38,11 @@ const FILES: [(&str, &str); 2] = [
 /// Makes the model. Fails when a stage failed or anything was lost; what was made is written all the same.
 pub fn run(args: &Args) -> Result<()> {
     let started = Instant::now();
-    let holds = look(&args.input)?;
+    let recorded = Recorded::look(&args.input)?;
     std::fs::create_dir_all(&args.out).with_context(|| format!("making the folder {}", args.out.display()))?;
     let out = args.out.canonicalize()?;
     let launch = crate::demo::files::write(&out, &FILES)?;
-    let plan = Plan::load(&launch, &sets(args, &holds, &out)?, nodes::KINDS)?;
+    let plan = Plan::load(&launch, &sets(args, &recorded, &launch, &out)?, nodes::KINDS)?;
     std::fs::write(out.join("config.toml"), plan.to_toml()).context("writing the effective configuration")?;
     let (harvest, outcome) = run::run(plan, &Course { out: &out, sweep_s: None, linger: false })?;
     let report = tell(args, &harvest, outcome.as_ref().err(), started, &out)?;
@@ -54,35 +54,10 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// What decides which nodes are needed.
-struct Holds {
-    laser_pictures: bool,
-    stripes: bool,
-}
-
-fn look(input: &Path) -> Result<Holds> {
-    let source = Source::open(input)?;
-    let Source::Recording(recording) = &source else { return Ok(Holds { laser_pictures: true, stripes: false }) };
-    let stripes = recording.streams().iter().any(|stream| stream.key.starts_with("stripe/"));
-    let laser_pictures =
-        recording.streams().iter().any(|stream| stream.key.starts_with("camera/") && stream.key.ends_with("/frame"));
-    if !laser_pictures && !stripes {
-        bail!("{}: neither laser-lit pictures nor stripes in it: there is no shape to find", input.display());
-    }
-    Ok(Holds { laser_pictures, stripes })
-}
-
-fn sets(args: &Args, holds: &Holds, out: &Path) -> Result<Vec<String>> {
-    let text = |path: &Path| toml::Value::String(path.display().to_string()).to_string();
-    let mut sets = vec![
-        format!("replay.file={}", text(&args.input.canonicalize()?)),
-        format!("export.folder={}", text(out)),
-        "run.pace=fast".to_owned(),
-    ];
-    if !holds.laser_pictures && holds.stripes {
-        sets.push("replay.stripes=true".to_owned());
-        sets.push("nodes.stripe.enabled=false".to_owned());
-    }
+fn sets(args: &Args, recorded: &Recorded, launch: &Path, out: &Path) -> Result<Vec<String>> {
+    let folder = toml::Value::String(out.display().to_string());
+    let mut sets = recorded.sets(&args.input.canonicalize()?, launch)?;
+    sets.extend([format!("export.folder={folder}"), "run.pace=fast".to_owned()]);
     sets.extend(args.sets.iter().cloned());
     Ok(sets)
 }

@@ -1,13 +1,14 @@
 //! `limn replay FILE`: a recording or a scan folder through a pipeline.
 
 use crate::cli::LaunchFile;
+use crate::recorded::Recorded;
 use crate::up;
 use anyhow::Result;
 use std::path::PathBuf;
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
-  limn replay scan.mcap                                     as it happened
+  limn replay scan.mcap                                     as it happened, with the settings it was recorded with
   limn replay scan.mcap --set run.pace=fast                 as fast as the machine can, with nothing lost
   limn replay ../someones/scan-folder --set export.folder=out/theirs";
 
@@ -26,9 +27,8 @@ pub struct Args {
 
 /// Starts the launch file with this recording in it.
 pub fn run(args: &Args) -> Result<()> {
-    // Quoted: a file may be called `1` or `true`.
-    let file = toml::Value::String(args.file.to_string_lossy().into_owned());
-    let sets = std::iter::once(format!("replay.file={file}")).chain(args.sets.iter().cloned());
-    let launch = LaunchFile { file: args.launch.clone(), sets: sets.collect() };
+    let mut sets = Recorded::look(&args.file)?.sets(&args.file, &args.launch)?;
+    sets.extend(args.sets.iter().cloned());
+    let launch = LaunchFile { file: args.launch.clone(), sets };
     up::run(&up::Args { launch, machine: None })
 }
