@@ -2,12 +2,19 @@
 //!
 //! In: [`wire::Profile`], points in the frame of the camera, and [`wire::Pose`], readings of the tracker. Out:
 //! [`wire::Scan`], the points in the world with the direction to the sensor and their sigma; and [`wire::Trajectory`],
-//! world_from_camera at each accepted reading, on the camera's clock.
+//! world_from_camera at each accepted reading, on the camera's clock; smooth, and 0.3 s behind.
 //!
-//! A profile waits until there is a reading behind its stamp; then the pose is interpolated between its neighbours, on
-//! the shorter arc (geometry::interpolate), and world_from_camera = world_from_body body_from_camera. A reading's stamp
-//! plus the rig's pose offset is the camera's clock. Position and rotation may have been sampled at different moments
-//! (`rotation_lag_nanos`): each is interpolated at its own.
+//! A profile waits until its pose is known; world_from_camera = world_from_body body_from_camera. A reading's stamp plus
+//! the rig's pose offset is the camera's clock. Position and rotation may have been sampled at different moments
+//! (`rotation_lag_nanos`): each is taken at its own.
+//!
+//! The pose is the one of a smooth way through the readings ([`geometry::smooth`]), which finds out by itself how noisy
+//! the tracker is. It is known once there is a reading [`Config::smooth_lag_ms`] behind the profile, or up to
+//! [`Config::predict_ms`] before it when those readings tell it better than the next would. The stamps alone decide, so
+//! it does not matter when and in which batches messages come. A scan's sigmas are the smooth pose's: the white noise that
+//! is left, and what the tracker states beyond it. Before the noise is known (16 readings), and with [`Config::smooth`]
+//! off, the pose is interpolated between the two readings around the profile, on the shorter arc
+//! (geometry::interpolate).
 //!
 //! The wait is bounded by [`Config::most_waiting`] and [`Config::most_wait_ms`]. What gets no pose is refused, and the
 //! next scan says how many for which reason; nothing is dropped unsaid. Readings are kept for ten minutes, so poses and
@@ -36,6 +43,7 @@
 //! assert!((scan.points[0].position_m[0] - 0.05).abs() < 1e-6);
 //! ```
 
+mod between;
 mod config;
 #[cfg(feature = "node")]
 pub mod node;

@@ -1,18 +1,15 @@
 //! The wiring: profiles and poses come, points in the world and the camera's way go.
 
 use crate::{Config, Register};
-use kit::{Node, Output};
+use kit::{Node, Output, STREAM_HISTORY};
 use wire::{Bulk, Header, RigidPose, Scan, Trajectory, topic};
-
-const PROFILES: usize = 1024;
-const POSES: usize = 4096;
 
 /// Registers the profiles of a camera by the poses of a tracker until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     config.check()?;
-    let mut poses = node.stream(&topic::pose(node.spec().source_of("tracker")), POSES)?;
-    let mut profiles = node.stream(&topic::profile(node.spec().source_of("camera")), PROFILES)?;
+    let mut poses = node.stream(&topic::pose(node.spec().source_of("tracker")), STREAM_HISTORY)?;
+    let mut profiles = node.stream(&topic::profile(node.spec().source_of("camera")), STREAM_HISTORY)?;
     let mut scans = node.output(&topic::scan(node.instance()))?;
     let mut trajectories = node.output(&topic::trajectory(node.instance()))?;
     let rig = node.spec().source_of("rig").to_owned();
@@ -43,7 +40,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             _ => None,
         };
         send(&mut node, &mut register, &mut scans)?;
-        if let Some(trajectory) = register.trajectory() {
+        while let Some(trajectory) = register.trajectory() {
             trajectories.send(trajectory)?;
         }
         if let Some(end) = ended {

@@ -1,7 +1,8 @@
 //! The tracker's readings on the camera's clock.
 
-use geometry::{NoPose, TimedPose, TrajectoryBuffer, rigid_from_wire};
-use nalgebra::Isometry3;
+use crate::Config;
+use crate::between::Between;
+use geometry::{NoPose, SmoothError, TimedPose, rigid_from_wire};
 use std::collections::VecDeque;
 use wire::{Pose, Quality};
 
@@ -27,15 +28,13 @@ impl BadReading {
     }
 }
 
-/// Positions and rotations, each at its own moment; `world_from_body`.
-#[derive(Debug, Clone, Default)]
+/// What the tracker said, `world_from_body`.
+#[derive(Debug, Clone)]
 pub(crate) struct Readings {
-    positions: TrajectoryBuffer,
-    /// Looked at only when some reading's rotation was older than its position.
-    rotations: TrajectoryBuffer,
-    lagging: bool,
-    /// Readings that are not told yet as a part of the way.
-    untold: VecDeque<TimedPose>,
+    between: Between,
+    use_degraded: bool,
+    /// Moments of readings that are not told yet as a part of the way.
+    untold: VecDeque<i64>,
     /// The last stamp that was far from its neighbours.
     suspect: Option<i64>,
 }
@@ -47,11 +46,16 @@ pub(crate) const KEPT_NANOS: i64 = 600_000_000_000;
 const JUMP_NANOS: u64 = 60_000_000_000;
 
 impl Readings {
+    pub(crate) fn new(config: &Config) -> Result<Self, SmoothError> {
+        let between = Between::new(config)?;
+        Ok(Self { between, use_degraded: config.use_degraded, untold: VecDeque::new(), suspect: None })
+    }
+
     /// Takes a reading.
-    pub(crate) fn take(&mut self, pose: &Pose, offset_nanos: i64, use_degraded: bool) -> Result<(), BadReading> {
+    pub(crate) fn take(&mut self, pose: &Pose, offset_nanos: i64) -> Result<(), BadReading> {
         match pose.quality {
             Quality::Lost => return Err(BadReading::Lost),
-            Quality::Degraded if !use_degraded => return Err(BadReading::Degraded),
+            Quality::Degraded if !self.use_degraded => return Err(BadReading::Degraded),
             _ => {}
         }
         let world_from_body = rigid_from_wire(&pose.world_from_body).ok_or(BadReading::NotFinite)?;
@@ -66,14 +70,10 @@ impl Readings {
             rotation_sigma_rad: sigma(pose.rotation_sigma_rad)?,
         };
         self.check_clock(reading.stamp_nanos)?;
-        if !self.positions.push(reading) {
+        if !self.between.push(&reading, pose.rotation_lag_nanos) {
             return Err(BadReading::Backwards);
         }
-        self.lagging |= pose.rotation_lag_nanos != 0;
-        // A rotation that is older than the one before it adds nothing; the position stands all the same.
-        self.rotations
-            .push(TimedPose { stamp_nanos: reading.stamp_nanos.saturating_sub(pose.rotation_lag_nanos), ..reading });
-        self.untold.push_back(reading);
+        self.untold.push_back(reading.stamp_nanos);
         self.forget();
         Ok(())
     }
@@ -92,48 +92,47 @@ impl Readings {
             return Err(BadReading::Jump);
         }
         if stamp_nanos < newest {
-            *self = Self::default();
+            self.between.clear();
+            self.untold.clear();
         }
         Ok(())
     }
 
     /// Drops what is too old, but not at every reading: a buffer moves all it holds.
     fn forget(&mut self) {
-        let Some(newest) = self.newest() else { return };
+        let Some((first, newest)) = self.between.span() else { return };
         let oldest = newest.saturating_sub(KEPT_NANOS);
-        let first = self.positions.samples().first().map_or(newest, |sample| sample.stamp_nanos);
         if first < oldest.saturating_sub(KEPT_NANOS / 4) {
-            self.positions.forget_before(oldest);
-            self.rotations.forget_before(oldest);
-            self.untold.retain(|reading| reading.stamp_nanos >= oldest);
+            self.between.forget_before(oldest);
+            self.untold.retain(|stamp_nanos| *stamp_nanos >= oldest);
         }
     }
 
     /// The stamp of the last reading, on the camera's clock.
     pub(crate) fn newest(&self) -> Option<i64> {
-        self.positions.samples().last().map(|sample| sample.stamp_nanos)
+        self.between.span().map(|(_, newest)| newest)
     }
 
-    /// world_from_body at a moment of the camera's clock.
-    pub(crate) fn at(&self, stamp_nanos: i64, gap_nanos: i64) -> Result<TimedPose, NoPose> {
-        let position = self.positions.at(stamp_nanos, gap_nanos)?;
-        if !self.lagging {
-            return Ok(position);
-        }
-        let rotation = self.rotations.at(stamp_nanos, gap_nanos)?;
-        let pose = Isometry3::from_parts(position.pose.translation, rotation.pose.rotation);
-        Ok(TimedPose { pose, rotation_sigma_rad: rotation.rotation_sigma_rad, ..position })
+    /// world_from_body at a moment of the camera's clock, as soon as it is known well enough.
+    pub(crate) fn at(&self, stamp_nanos: i64) -> Result<TimedPose, NoPose> {
+        self.between.at(stamp_nanos)
     }
 
-    /// world_from_body at the readings since the last call, as far as their rotations are known by now.
-    pub(crate) fn tell(&mut self, gap_nanos: i64) -> Vec<TimedPose> {
+    /// The same when no reading will come any more.
+    pub(crate) fn at_end(&self, stamp_nanos: i64) -> Result<TimedPose, NoPose> {
+        self.between.at_end(stamp_nanos)
+    }
+
+    /// world_from_body at the readings since the last call, as far as it is known by now; the rest too when no reading
+    /// will come any more.
+    pub(crate) fn tell(&mut self, ended: bool) -> Vec<TimedPose> {
         let mut way = Vec::new();
-        while let Some(reading) = self.untold.front() {
-            match self.at(reading.stamp_nanos, gap_nanos) {
-                Ok(pose) => way.push(pose),
-                Err(NoPose::After) => break,
+        while let Some(&stamp_nanos) = self.untold.front() {
+            match self.between.settled(stamp_nanos) {
+                Err(NoPose::After) if !ended => break,
+                Err(NoPose::After) => way.extend(self.between.at_end(stamp_nanos)),
                 // No rotation was measured around it: the way has no sample there.
-                Err(NoPose::Before | NoPose::Gap) => {}
+                pose => way.extend(pose),
             }
             self.untold.pop_front();
         }

@@ -3,7 +3,7 @@
 use crate::place::Place;
 use crate::readings::{KEPT_NANOS, Readings};
 use crate::{Config, ConfigError};
-use geometry::{NoPose, TimedPose, rigid_from_wire, rigid_to_wire};
+use geometry::{NoPose, SmoothError, TimedPose, rigid_from_wire, rigid_to_wire};
 use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
 use wire::{Bulk, Calibration, Header, Phase, Pose, Profile, Refusal, Scan, Trajectory};
@@ -14,6 +14,9 @@ pub enum RegisterError {
     /// The bounds.
     #[error(transparent)]
     Config(#[from] ConfigError),
+    /// The bounds of the smoother.
+    #[error(transparent)]
+    Smooth(#[from] SmoothError),
     /// Hand-eye.
     #[error("the calibration's body_from_camera is no rigid transform: {0:?}")]
     HandEye(wire::RigidPose),
@@ -30,6 +33,8 @@ pub struct Register {
     /// The present scan may give way to the next.
     finished: bool,
     readings: Readings,
+    /// What a scan begins with.
+    no_readings: Readings,
     /// Readings of the next scan that came before the last profiles of this one.
     next: Option<(Header, Readings)>,
     waiting: VecDeque<Profile>,
@@ -52,6 +57,7 @@ impl Register {
     /// For one calibrated handset.
     pub fn new(config: Config, calibration: &Calibration) -> Result<Self, RegisterError> {
         config.check()?;
+        let no_readings = Readings::new(&config)?;
         let hand_eye = calibration.body_from_camera;
         Ok(Self {
             config,
@@ -59,7 +65,8 @@ impl Register {
             offset_nanos: calibration.pose_offset_nanos,
             header: None,
             finished: false,
-            readings: Readings::default(),
+            readings: no_readings.clone(),
+            no_readings,
             next: None,
             waiting: VecDeque::new(),
             registered: VecDeque::new(),
@@ -81,7 +88,7 @@ impl Register {
         if let Some(present) = &mut self.header {
             present.phase = header.phase;
         }
-        match self.readings.take(pose, self.offset_nanos, self.config.use_degraded) {
+        match self.readings.take(pose, self.offset_nanos) {
             Ok(()) => self.serve(),
             Err(bad) => self.refuse(bad.reason(), 1),
         }
@@ -95,13 +102,13 @@ impl Register {
             Some((next, _)) if header.scan > next.scan => {
                 let next = *next;
                 self.begin(&next);
-                self.next = Some((header, Readings::default()));
+                self.next = Some((header, self.no_readings.clone()));
             }
             Some(_) => {}
-            None => self.next = Some((header, Readings::default())),
+            None => self.next = Some((header, self.no_readings.clone())),
         }
         if let Some((_, readings)) = &mut self.next
-            && let Err(bad) = readings.take(pose, self.offset_nanos, self.config.use_degraded)
+            && let Err(bad) = readings.take(pose, self.offset_nanos)
         {
             self.refuse(bad.reason(), 1);
         }
@@ -134,22 +141,24 @@ impl Register {
         self.registered.drain(..)
     }
 
-    /// Where the camera was at the readings since the last call; `None` when there was none. A reading whose rotation is
-    /// older than its position is told when the rotation at that moment is known. After a new scan began, the first call
-    /// tells the rest of the scan before.
+    /// Where the camera was at the readings since the last call, as far as that is known by now; `None` when there was
+    /// none. The smooth way is told 0.3 s behind the newest reading; a reading whose rotation is older than its position,
+    /// when the rotation at that moment is known; the rest once the scan is finished. After a new scan began, the first
+    /// call tells the rest of the scan before.
     pub fn trajectory(&mut self) -> Option<Trajectory> {
-        self.older_ways.pop_front().or_else(|| self.way())
+        self.older_ways.pop_front().or_else(|| self.way(self.finished))
     }
 
-    fn way(&mut self) -> Option<Trajectory> {
+    fn way(&mut self, ended: bool) -> Option<Trajectory> {
         let header = self.header?;
-        let way = self.readings.tell(self.config.most_gap_nanos());
+        let way = self.readings.tell(ended);
         let header = Header { stamp_nanos: way.last()?.stamp_nanos, ..header.derived() };
         let camera = |body: &TimedPose| TimedPose { pose: body.pose * self.body_from_camera, ..*body };
         Some(Trajectory { header, samples: way.iter().map(|body| (&camera(body)).into()).collect() })
     }
 
-    /// No reading of this scan will come any more: what still waits is refused. Returns what was refused and not yet told.
+    /// No reading of this scan will come any more: what still waits is registered by the readings that there are, or
+    /// refused. Returns what was refused and not yet told.
     pub fn finish(&mut self) -> Vec<Refusal> {
         self.give_up_waiting();
         self.finished = true;
@@ -157,21 +166,24 @@ impl Register {
     }
 
     fn give_up_waiting(&mut self) {
-        let left = self.waiting.len() as u64;
-        self.waiting.clear();
-        self.refuse(unplaced(NoPose::After), left);
+        for profile in std::mem::take(&mut self.waiting) {
+            match self.readings.at_end(profile.header.stamp_nanos) {
+                Ok(body) => self.place(&profile, &body),
+                Err(never) => self.refuse(unplaced(never), 1),
+            }
+        }
     }
 
     /// Starts a scan, with the readings of it that have come already.
     fn begin(&mut self, header: &Header) {
         self.give_up_waiting();
-        let rest = self.way();
+        let rest = self.way(true);
         self.older_ways.extend(rest);
         self.readings = match self.next.take() {
             Some((next, readings)) if next.scan == header.scan => readings,
             other => {
                 self.next = other.filter(|(next, _)| next.scan > header.scan);
-                Readings::default()
+                self.no_readings.clone()
             }
         };
         self.header = Some(*header);
@@ -182,11 +194,10 @@ impl Register {
     fn serve(&mut self) {
         while let Some(profile) = self.waiting.front() {
             let stamp_nanos = profile.header.stamp_nanos;
-            match self.readings.at(stamp_nanos, self.config.most_gap_nanos()) {
+            match self.readings.at(stamp_nanos) {
                 Ok(body) => {
                     let Some(profile) = self.waiting.pop_front() else { return };
-                    let scan = self.register(&profile, &body);
-                    self.registered.push_back(scan);
+                    self.place(&profile, &body);
                 }
                 Err(NoPose::After) if self.is_far_ahead(stamp_nanos) => {
                     self.waiting.pop_front();
@@ -212,20 +223,21 @@ impl Register {
         self.readings.newest().is_some_and(|newest| stamp_nanos.saturating_sub(newest) > KEPT_NANOS)
     }
 
-    fn register(&mut self, profile: &Profile, body: &TimedPose) -> Scan {
+    fn place(&mut self, profile: &Profile, body: &TimedPose) {
         let world_from_camera = body.pose * self.body_from_camera;
         let place = Place::new(&world_from_camera);
         let mut points = Vec::with_capacity(profile.points.len());
         points.extend(profile.points.iter().filter_map(|point| place.of(point)));
         self.refuse(NOT_FINITE, (profile.points.len() - points.len()) as u64);
-        Scan {
+        let refused = self.take_refused();
+        self.registered.push_back(Scan {
             header: profile.header.derived(),
             world_from_camera: rigid_to_wire(&world_from_camera),
             position_sigma_m: body.position_sigma_m,
             rotation_sigma_rad: body.rotation_sigma_rad,
             points: Bulk(points),
-            refused: self.take_refused(),
-        }
+            refused,
+        });
     }
 
     fn refuse(&mut self, reason: &'static str, count: u64) {

@@ -57,6 +57,11 @@ fn profile(stamp_nanos: i64) -> Profile {
     Profile { header: header(stamp_nanos), points: (0..5).map(point).collect(), refused: vec![] }
 }
 
+/// The pose between two readings, told as soon as both are there.
+fn straight() -> Config {
+    Config { smooth: false, ..Config::default() }
+}
+
 fn reasons(refused: &[Refusal]) -> Vec<(&str, u64)> {
     refused.iter().map(|refusal| (refusal.reason.as_str(), refusal.count)).collect()
 }
@@ -64,7 +69,7 @@ fn reasons(refused: &[Refusal]) -> Vec<(&str, u64)> {
 #[test]
 fn points_land_where_the_way_puts_them_clock_offset_and_hand_eye_included() {
     let offset = -7 * MS;
-    let mut register = Register::new(Config::default(), &calibration(offset)).unwrap();
+    let mut register = Register::new(straight(), &calibration(offset)).unwrap();
     for i in 0..40 {
         // The tracker's clock is 7 ms ahead.
         register.pose(&pose(i * 10 * MS - offset, &world_from_body(i * 10 * MS)));
@@ -88,7 +93,7 @@ fn points_land_where_the_way_puts_them_clock_offset_and_hand_eye_included() {
 
 #[test]
 fn a_rotation_that_is_older_than_its_position_is_taken_at_its_own_moment() {
-    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    let mut register = Register::new(straight(), &calibration(0)).unwrap();
     let lag = 12 * MS;
     for i in 0..40 {
         let stamp = i * 10 * MS;
@@ -196,7 +201,7 @@ fn poses_may_all_come_before_the_profiles_or_behind_them() {
 
 #[test]
 fn the_way_has_each_rotation_at_its_own_moment() {
-    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    let mut register = Register::new(straight(), &calibration(0)).unwrap();
     let lag = 25 * MS;
     let mut samples = Vec::new();
     for i in 0..40 {
@@ -217,7 +222,7 @@ fn the_way_has_each_rotation_at_its_own_moment() {
 
 #[test]
 fn poses_of_the_next_scan_do_not_push_out_the_last_profiles_of_this_one() {
-    let mut register = Register::new(Config::default(), &calibration(0)).unwrap();
+    let mut register = Register::new(straight(), &calibration(0)).unwrap();
     let of = |scan, stamp: i64| Header { scan, ..header(stamp * MS) };
     let reading = |scan, stamp| Pose { header: of(scan, stamp), ..pose(0, &world_from_body(stamp * MS)) };
     for stamp in [0, 10, 20] {

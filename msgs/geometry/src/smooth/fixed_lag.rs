@@ -25,6 +25,7 @@ pub struct Wait {
 pub struct FixedLagSmoother {
     config: Smoothing,
     readings: Vec<Reading>,
+    newest_rotation_nanos: Option<i64>,
     tunings: Vec<Tuning>,
     taken: u64,
 }
@@ -76,7 +77,15 @@ impl FixedLagSmoother {
     /// Without readings.
     pub fn new(config: Smoothing) -> Result<Self, SmoothError> {
         config.check()?;
-        Ok(Self { config, readings: Vec::new(), tunings: Vec::new(), taken: 0 })
+        Ok(Self { config, readings: Vec::new(), newest_rotation_nanos: None, tunings: Vec::new(), taken: 0 })
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.readings.clear();
+        self.newest_rotation_nanos = None;
+        self.tunings.clear();
+        self.taken = 0;
     }
 
     /// Takes a reading whose rotation was sampled so long before its position; refuses one that is not finite or not
@@ -88,8 +97,8 @@ impl FixedLagSmoother {
             return false;
         }
         let turned = stamp_nanos.saturating_sub(rotation_lag_nanos);
-        let older = self.readings.iter().rev().find_map(|r| r.rotation_nanos);
-        let rotation_nanos = older.is_none_or(|older| turned > older).then_some(turned);
+        let rotation_nanos = self.newest_rotation_nanos.is_none_or(|newest| turned > newest).then_some(turned);
+        self.newest_rotation_nanos = rotation_nanos.or(self.newest_rotation_nanos);
         self.readings.push(Reading { pose: *reading, rotation_nanos });
         self.taken += 1;
         let period = |stamp_nanos: i64| stamp_nanos.div_euclid(TUNE_EVERY_NANOS);
