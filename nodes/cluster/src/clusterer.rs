@@ -4,7 +4,8 @@ use crate::ball::{Ball, Sample, steps_per_metre};
 use crate::grid::{CentreGrid, distance_squared};
 use crate::movable::{END, MovablePoints, SETTLED};
 use crate::{Config, ConfigError, Table, TablePlane, output};
-use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan};
+use nalgebra::Vector3;
+use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan, ScanPoint};
 
 /// Sorts points into balls, as they come.
 ///
@@ -23,6 +24,9 @@ pub struct BallClusterer {
     /// The next message says that all before is void.
     afresh: bool,
 }
+
+/// However badly places are known, a ball of this radius leaves no shape in a thing that a hand can sweep.
+const MOST_RADIUS_M: f64 = 0.01;
 
 /// All that a new scan starts without.
 pub(crate) struct State {
@@ -81,6 +85,11 @@ impl BallClusterer {
         }
         let stamp_nanos = self.header.stamp_nanos.max(scan.header.stamp_nanos);
         self.header = Header { stamp_nanos, ..scan.header.derived() };
+        if self.state.balls.is_empty()
+            && let Some(first) = scan.points.first()
+        {
+            self.state = State::new(self.radius_m(scan, first));
+        }
         for point in scan.points.iter() {
             match Sample::new(point) {
                 None => self.not_finite += 1,
@@ -88,6 +97,19 @@ impl BallClusterer {
                 Some(sample) => self.state.insert(sample),
             }
         }
+    }
+
+    /// D, for points whose places are as well known as this one's.
+    fn radius_m(&self, scan: &Scan, point: &ScanPoint) -> f32 {
+        let Config { ball_radius_m, radius_per_sigma, .. } = self.config;
+        let eye = Vector3::from(scan.world_from_camera.translation_m);
+        let lever_m = (Vector3::from(point.position_m).cast() - eye).norm();
+        let variance = scan.position_sigma_m.powi(2)
+            + (scan.rotation_sigma_rad * lever_m).powi(2)
+            + f64::from(point.sigma_m).powi(2);
+        // What is not finite is no reason for a larger ball, and its points are refused one by one.
+        let wanted = (radius_per_sigma * variance.sqrt()).min(MOST_RADIUS_M);
+        if wanted > ball_radius_m { wanted as f32 } else { ball_radius_m as f32 }
     }
 
     /// The balls that changed since the last call and have enough points, by number; also a ball that was sent before and

@@ -9,6 +9,9 @@ pub struct Config {
     /// D of the paper: the radius of a ball. Points of a ball are averaged, so it should be no smaller than the noise and
     /// no larger than the finest detail that is to survive. Default 0.0008.
     pub ball_radius_m: f64,
+    /// While places are known badly, balls are larger: D is at least so many times the standard deviation that the first
+    /// point of a scan (or of its revision) states for its place. 0: never. Default 2.
+    pub radius_per_sigma: f64,
     /// T of the paper: a ball with fewer points is an outlier. Default 4.
     pub least_points: u32,
     /// Whether the table on which the thing stands is taken away at the end. Default `keep`.
@@ -30,7 +33,7 @@ pub enum Table {
 
 impl Default for Config {
     fn default() -> Self {
-        Self { ball_radius_m: 0.8e-3, least_points: 4, table: Table::Keep, publish_every_s: 0.5 }
+        Self { ball_radius_m: 0.8e-3, radius_per_sigma: 2.0, least_points: 4, table: Table::Keep, publish_every_s: 0.5 }
     }
 }
 
@@ -40,6 +43,9 @@ pub enum ConfigError {
     /// Too small, too large or NaN.
     #[error("ball_radius_m = {0}: from 0.00001 to 0.1 is understood")]
     BallRadius(f64),
+    /// Below 0, too large or NaN.
+    #[error("radius_per_sigma = {0}: from 0 to 100 is understood")]
+    RadiusPerSigma(f64),
     /// Then every ball would be an outlier, or none could be.
     #[error("least_points = 0: a ball has at least the point that founded it; say 1 to keep them all")]
     LeastPoints,
@@ -53,6 +59,9 @@ impl Config {
     pub fn check(&self) -> Result<(), ConfigError> {
         if !(1e-5..=0.1).contains(&self.ball_radius_m) {
             return Err(ConfigError::BallRadius(self.ball_radius_m));
+        }
+        if !(0.0..=100.0).contains(&self.radius_per_sigma) {
+            return Err(ConfigError::RadiusPerSigma(self.radius_per_sigma));
         }
         if self.least_points == 0 {
             return Err(ConfigError::LeastPoints);

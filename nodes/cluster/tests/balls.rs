@@ -145,6 +145,22 @@ fn nothing_in_gives_nothing_out_and_aiming_keeps_nothing() {
 }
 
 #[test]
+fn balls_are_as_large_as_the_places_are_uncertain_and_shrink_when_a_revision_knows_better() {
+    let mut clusterer = BallClusterer::new(Config::default()).unwrap();
+    let dome = dome(20_000);
+    clusterer.insert(&scan(0, dome.clone()));
+    let exact = clusterer.whole().points.len();
+    // 1 degree at 50 mm and 1 mm: D = 2 sqrt(0.87^2 + 1 + 0.1^2) mm.
+    clusterer.insert(&Scan { position_sigma_m: 1e-3, rotation_sigma_rad: 1f64.to_radians(), ..scan(1, dome.clone()) });
+    let vague = clusterer.whole().points.len();
+    let ratio = exact as f64 / vague as f64;
+    let expected = (2.0_f64 * (0.873_f64.powi(2) + 1.0 + 0.01).sqrt() / 0.8).powi(2);
+    assert!((ratio / expected - 1.0).abs() < 0.2, "{exact} balls, then {vague}: {ratio} times fewer, not {expected}");
+    clusterer.insert(&scan(2, dome));
+    assert_eq!(clusterer.whole().points.len(), exact);
+}
+
+#[test]
 fn a_configuration_that_cannot_be_is_named() {
     for radius in [0.0, -1.0, f64::NAN, 1.0] {
         let config = Config { ball_radius_m: radius, ..Config::default() };
