@@ -18,6 +18,8 @@
 //! Both trackers need this and nodes never depend on nodes; it is no part of `kit`, which brings the bus. It is the only
 //! crate that names serialport.
 
+#[cfg(feature = "serial")]
+mod device;
 mod device_clock;
 mod envelope;
 mod faults;
@@ -27,12 +29,18 @@ mod line;
 #[cfg(feature = "serial")]
 mod line_error;
 #[cfg(feature = "serial")]
+mod noise;
+#[cfg(feature = "serial")]
 mod pty;
 mod rate_lock;
+#[cfg(feature = "serial")]
+mod ring;
 #[cfg(feature = "serial")]
 mod session;
 mod wire_time;
 
+#[cfg(feature = "serial")]
+pub use device::{Arrived, Counts, Device, Heard, News, Tally, Trouble};
 pub use device_clock::DeviceClock;
 pub use envelope::{Envelope, FittedLine};
 pub use faults::{Delivery, Faults, FaultsConfig};
@@ -45,7 +53,7 @@ pub use line_error::LineError;
 pub use pty::{Emulated, Pty, PtyError};
 pub use rate_lock::RateLock;
 #[cfg(feature = "serial")]
-pub use session::{Arrived, Counts, Device, Heard, News, Session, Tally, Trouble};
+pub use session::Session;
 pub use wire_time::wire_nanos;
 
 /// A moment of arrival without what delayed it.

@@ -1,118 +1,27 @@
 //! A device that is listened to, whatever happens to its line.
 
+use crate::device::{Arrived, Counts, Device, News, Trouble};
+use crate::noise::Noise;
+use crate::ring::Ring;
 use crate::{HostClock, Line, LineError, LineSettings, wire_nanos};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 const FIRST_BACKOFF: Duration = Duration::from_millis(250);
 const LAST_BACKOFF: Duration = Duration::from_secs(4);
-/// Who streamed for so long is believed to work: the next trouble is met without delay.
-const WORKS_AFTER: Duration = Duration::from_secs(5);
+/// So much of what is no record is shown to the device, to say what it may be.
+const SAMPLE_BYTES: usize = 64;
 /// The same trouble is named again after so long.
 const NAMED_AGAIN: Duration = Duration::from_secs(30);
-/// Records that wait for the node; more than ten seconds of any tracker.
-const WAITING: usize = 4096;
-/// A line on which more of the bytes than this belong to no record is half dead.
-const NOISY_SHARE: f64 = 0.25;
-const NOISE_WINDOW: Duration = Duration::from_secs(1);
-
-/// What a decoder has seen since it was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Tally {
-    /// Whole records.
-    pub records: u64,
-    /// Records that began and did not end as they should.
-    pub broken: u64,
-    /// Bytes that belong to no whole record.
-    pub skipped_bytes: u64,
-}
-
-/// Why nothing is measured.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Trouble {
-    /// The port.
-    #[error(transparent)]
-    Line(#[from] LineError),
-    /// What is at its other end; a sentence with what to do.
-    #[error("{0}")]
-    Device(String),
-}
-
-/// A device at the other end of a line.
-pub trait Device: Send + 'static {
-    /// What it sends.
-    type Record: Send + 'static;
-    /// Brings it from any state to sending records; what it found, in a sentence.
-    fn set_up(&mut self, line: &mut Line) -> Result<String, Trouble>;
-    /// Takes bytes; calls back for each whole record.
-    fn take(&mut self, bytes: &[u8], each: &mut dyn FnMut(Heard<Self::Record>));
-    /// What it has seen so far.
-    fn tally(&self) -> Tally;
-    /// How long it may be quiet.
-    fn most_silence(&self) -> Duration;
-    /// What to say when nothing comes.
-    fn silence(&self) -> String;
-    /// What to say when bytes come that are no records; a sample of them.
-    fn garbage(&self, sample: &[u8]) -> String;
-}
-
-/// A record within the bytes that a device was given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Heard<R> {
-    /// What was read.
-    pub record: R,
-    /// How many of the bytes lie behind it.
-    pub behind: usize,
-    /// Records since the one before that came in pieces.
-    pub missed: u32,
-}
-
-/// A record, and when its last byte came, on the host's clock.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Arrived<R> {
-    /// The arrival.
-    pub nanos: i64,
-    /// What came.
-    pub record: R,
-    /// Records since the one before that came in pieces.
-    pub missed: u32,
-}
-
-/// What the operator should know.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum News {
-    /// It works (again); what was found.
-    Streaming(String),
-    /// It does not; it is tried again.
-    Trouble(Trouble),
-    /// It works, but not well.
-    Noisy(String),
-}
-
-/// The account of a session.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Whole records.
-    pub records: u64,
-    /// Records that began and did not end as they should.
-    pub broken: u64,
-    /// Bytes that belong to no whole record.
-    pub skipped_bytes: u64,
-    /// How often it was set up.
-    pub starts: u64,
-    /// Records that nobody fetched in time.
-    pub overflowed: u64,
-}
 
 #[derive(Default)]
 struct SharedCounts([AtomicU64; 5]);
 
 /// The thread that listens, and what it heard.
 pub struct Session<R> {
-    records: Receiver<Arrived<R>>,
+    records: Arc<Ring<Arrived<R>>>,
     counts: Arc<SharedCounts>,
     stopping: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -126,7 +35,7 @@ impl<R: Send + 'static> Session<R> {
         clock: HostClock,
         say: impl FnMut(News) + Send + 'static,
     ) -> Self {
-        let (sender, records) = sync_channel(WAITING);
+        let records = Arc::new(Ring::new());
         let counts = Arc::<SharedCounts>::default();
         let stopping = Arc::<AtomicBool>::default();
         let listener = Listener {
@@ -134,7 +43,7 @@ impl<R: Send + 'static> Session<R> {
             settings,
             clock,
             say: Box::new(say),
-            sender,
+            records: records.clone(),
             counts: counts.clone(),
             stopping: stopping.clone(),
             named: None,
@@ -145,14 +54,7 @@ impl<R: Send + 'static> Session<R> {
 
     /// The next record; `None` when none came in this time.
     pub fn next(&self, wait: Duration) -> Option<Arrived<R>> {
-        match self.records.recv_timeout(wait) {
-            Ok(record) => Some(record),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => {
-                std::thread::sleep(wait);
-                None
-            }
-        }
+        self.records.pop(wait)
     }
 
     /// The account so far.
@@ -178,7 +80,7 @@ struct Listener<D: Device> {
     settings: LineSettings,
     clock: HostClock,
     say: Box<dyn FnMut(News) + Send>,
-    sender: SyncSender<Arrived<D::Record>>,
+    records: Arc<Ring<Arrived<D::Record>>>,
     counts: Arc<SharedCounts>,
     stopping: Arc<AtomicBool>,
     named: Option<(Trouble, Instant)>,
@@ -188,12 +90,12 @@ impl<D: Device> Listener<D> {
     fn live(mut self) {
         let mut backoff = FIRST_BACKOFF;
         while !self.stopping.load(Ordering::SeqCst) {
-            let started = Instant::now();
+            let starts = self.counts.0[3].load(Ordering::Relaxed);
             let trouble = match self.attempt() {
                 Trouble::Line(LineError::Stopped) => return,
                 trouble => trouble,
             };
-            if started.elapsed() > WORKS_AFTER {
+            if self.counts.0[3].load(Ordering::Relaxed) > starts {
                 backoff = FIRST_BACKOFF;
             }
             self.name(trouble);
@@ -229,10 +131,10 @@ impl<D: Device> Listener<D> {
 
     fn listen(&mut self, line: &mut Line) -> Trouble {
         let mut buffer = [0u8; 1024];
+        let mut unread: Vec<u8> = Vec::with_capacity(2 * SAMPLE_BYTES);
         let mut last_byte = Instant::now();
         let mut last_record = Instant::now();
-        let mut noise =
-            Noise { since: Instant::now(), bytes: 0, skipped: self.device.tally().skipped_bytes, named: None };
+        let mut noise = Noise::new(self.device.tally().skipped_bytes);
         loop {
             let chunk = match line.read(&mut buffer) {
                 Ok(chunk) => chunk,
@@ -243,15 +145,18 @@ impl<D: Device> Listener<D> {
                 if self.take(&buffer[..chunk.len], chunk.arrival_nanos) > 0 {
                     last_record = last_byte;
                     self.named = None;
+                    unread.clear();
+                } else if unread.len() < SAMPLE_BYTES {
+                    unread.extend(buffer[..chunk.len].iter().take(SAMPLE_BYTES));
                 }
-                noise.bytes += chunk.len as u64;
+                noise.hear(chunk.len);
             }
             let most = self.device.most_silence();
             if last_byte.elapsed() > most {
                 return Trouble::Device(self.device.silence());
             }
             if last_record.elapsed() > most {
-                return Trouble::Device(self.device.garbage(&buffer[..chunk.len]));
+                return Trouble::Device(self.device.garbage(&unread));
             }
             if let Some(share) = noise.share(self.device.tally().skipped_bytes) {
                 let path = self.settings.path.display();
@@ -265,14 +170,14 @@ impl<D: Device> Listener<D> {
     }
 
     fn take(&mut self, bytes: &[u8], arrival_nanos: i64) -> u64 {
-        let Self { device, sender, counts, settings, .. } = self;
+        let Self { device, records, counts, settings, .. } = self;
         let mut whole = 0;
         device.take(bytes, &mut |heard| {
             whole += 1;
             // What lies behind it in the same chunk came later, at the pace of the line.
             let nanos = arrival_nanos - wire_nanos(heard.behind, settings.baud);
             let arrived = Arrived { nanos, record: heard.record, missed: heard.missed };
-            if sender.try_send(arrived).is_err() {
+            if records.push(arrived) {
                 counts.0[4].fetch_add(1, Ordering::Relaxed);
             }
         });
@@ -281,29 +186,5 @@ impl<D: Device> Listener<D> {
             count.store(value, Ordering::Relaxed);
         }
         whole
-    }
-}
-
-struct Noise {
-    since: Instant,
-    bytes: u64,
-    skipped: u64,
-    named: Option<Instant>,
-}
-
-impl Noise {
-    /// The share of bytes that were skipped in the last second, when it is high and was not told lately.
-    fn share(&mut self, skipped: u64) -> Option<f64> {
-        if self.since.elapsed() < NOISE_WINDOW {
-            return None;
-        }
-        let share = (skipped - self.skipped) as f64 / self.bytes.max(1) as f64;
-        (self.since, self.bytes, self.skipped) = (Instant::now(), 0, skipped);
-        let lately = self.named.is_some_and(|at| at.elapsed() < NAMED_AGAIN);
-        if share < NOISY_SHARE || lately {
-            return None;
-        }
-        self.named = Some(Instant::now());
-        Some(share.min(1.0))
     }
 }

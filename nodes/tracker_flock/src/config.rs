@@ -18,8 +18,8 @@ pub struct Config {
     pub raise_rts: bool,
     /// Reset the bird by RTS at the start (needs a fully wired cable; takes 3 s).
     pub reset: bool,
-    /// Addresses of the units with a sensor, ascending; none for a bird alone (address 0). With two or more they answer
-    /// in group mode.
+    /// Addresses of the units with a sensor, ascending; none for a bird alone (address 0). They answer in
+    /// group mode.
     pub sensors: Vec<u8>,
     /// How many boxes the flock has, an extended range controller included; 0: as many as the highest address.
     pub units: u8,
@@ -175,14 +175,26 @@ impl Config {
             return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
         }
         if !BAUDS.contains(&self.baud) {
-            return refuse("baud", self.baud.to_string(), "2400, 4800, 9600, 19200, 38400, 57600 or 115200, as its switches");
+            return refuse(
+                "baud",
+                self.baud.to_string(),
+                "2400, 4800, 9600, 19200, 38400, 57600 or 115200, as its switches",
+            );
         }
         let ascending = self.sensors.windows(2).all(|pair| pair[0] < pair[1]);
         if !ascending || self.sensors.iter().any(|&address| address == 0 || address > self.addressing.most()) {
-            return refuse("sensors", format!("{:?}", self.sensors), "addresses from 1 on, ascending, within `addressing`");
+            return refuse(
+                "sensors",
+                format!("{:?}", self.sensors),
+                "addresses from 1 on, ascending, within `addressing`",
+            );
         }
         if self.units > self.addressing.most() || (self.units != 0 && self.units < self.highest()) {
-            return refuse("units", self.units.to_string(), "at least the highest address of `sensors`, within `addressing`");
+            return refuse(
+                "units",
+                self.units.to_string(),
+                "at least the highest address of `sensors`, within `addressing`",
+            );
         }
         if !matches!(self.output, Format::PositionAngles | Format::PositionMatrix | Format::PositionQuaternion) {
             return refuse("output", format!("{:?}", self.output), "a pose needs position and orientation");
@@ -225,9 +237,9 @@ impl Config {
         if self.sensors.is_empty() { vec![0] } else { self.sensors.clone() }
     }
 
-    /// True when several units answer together.
+    /// True when units answer together, each record with its address; false for a bird alone.
     pub fn is_group(&self) -> bool {
-        self.sensors.len() > 1
+        !self.sensors.is_empty()
     }
 
     /// How many boxes the flock has; 0 for a bird alone.

@@ -147,7 +147,8 @@ impl FlockEmulator {
 
     /// The parameters as the host left them: address, format's number, filters, hemisphere, mains.
     pub fn settings(&self) -> Vec<(u8, u8, u16, [u8; 2], u8)> {
-        let of = |unit: &Unit| (unit.address, unit.format.status_code(), unit.filters_off, unit.hemisphere, unit.mains_hz);
+        let of =
+            |unit: &Unit| (unit.address, unit.format.status_code(), unit.filters_off, unit.hemisphere, unit.mains_hz);
         self.units.iter().map(of).collect()
     }
 
@@ -165,7 +166,7 @@ impl FlockEmulator {
             self.cycle += 1;
             match self.mood {
                 Mood::Silent => {}
-                Mood::Test if self.cycle % (self.rate_hz as u64 / 2).max(1) == 0 => {
+                Mood::Test if self.cycle.is_multiple_of((self.rate_hz as u64 / 2).max(1)) => {
                     self.say(self.cycle_nanos, b"OK\r\n".to_vec());
                 }
                 Mood::Test => {}
@@ -182,7 +183,7 @@ impl FlockEmulator {
             let (_, rotation) = (self.world)(unit.address, at - self.config.rotation_latency_nanos);
             unit.measure(position, rotation, self.config.filters);
         }
-        if self.streaming && !self.held && self.configured && self.cycle % self.report_every == 0 {
+        if self.streaming && !self.held && self.configured && self.cycle.is_multiple_of(self.report_every) {
             self.report(0, at);
         }
     }
@@ -244,7 +245,9 @@ impl FlockEmulator {
                 let answer = self.examine(index, parameter);
                 self.say(now, answer);
             }
-            (b'P', &[7, low, high]) => self.rate_hz = (f64::from(u16::from_le_bytes([low, high])) / 256.0).clamp(20.0, 144.0),
+            (b'P', &[7, low, high]) => {
+                self.rate_hz = (f64::from(u16::from_le_bytes([low, high])) / 256.0).clamp(20.0, 144.0)
+            }
             (b'P', &[35, on]) => self.group = on != 0,
             (b'P', &[50, units]) => {
                 self.busy_until = now + CONFIGURING_NANOS;

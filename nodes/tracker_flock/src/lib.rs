@@ -18,7 +18,7 @@
 //!
 //! ```
 //! use tracker_flock::protocol::{decoder::Decoder, records::{Format, Layout}};
-//! use tracker_flock::{Config, FlockTracker};
+//! use tracker_flock::{Config, FlockTracker, Heard};
 //! let config = Config { output: Format::PositionAngles, ..Config::default() };
 //! let mut tracker = FlockTracker::new(config)?;
 //! let layout = Layout::plain(Format::PositionAngles);
@@ -26,8 +26,9 @@
 //! // 12, -6, 3 inches; azimuth 30, elevation -10, roll 90 degrees.
 //! let bytes = [0xAA, 0x15, 0x2A, 0x75, 0x2A, 0x05, 0x55, 0x0A, 0x39, 0x7C, 0x00, 0x20];
 //! let record = bytes.iter().find_map(|&byte| decoder.push(byte)).ok_or("no record")?;
+//! let sense = Default::default(); // which way quaternions turn: there is none in this format
 //! let arrival_nanos = 1_000_000_000;
-//! let pose = tracker.process(&record, &layout, arrival_nanos, 0).ok_or("another unit's")?.pose;
+//! let pose = tracker.process(&Heard { record, layout, sense }, arrival_nanos, 0).ok_or("another unit's")?.pose;
 //! assert!((pose.world_from_body.translation_m[0] - 12.0 * 0.0254).abs() < 2e-4);
 //! assert!(pose.header.stamp_nanos < arrival_nanos - 8_000_000, "wire time and latency are taken off");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -44,4 +45,4 @@ pub mod protocol;
 mod tracker;
 
 pub use config::{Config, ConfigError, Hemisphere};
-pub use tracker::{FlockTracker, SensorPose};
+pub use tracker::{FlockTracker, Heard, SensorPose};

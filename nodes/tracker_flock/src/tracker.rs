@@ -8,6 +8,17 @@ use nalgebra::Vector3;
 use serial_line::{RateLock, Undelayed, wire_nanos};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
+/// A record as the port heard it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Heard {
+    /// The words.
+    pub record: Record,
+    /// How it lay on the wire.
+    pub layout: Layout,
+    /// Which way its quaternion turns, when it has one.
+    pub sense: QuaternionSense,
+}
+
 /// A pose of one sensor. Its stamp is on the clock of the arrivals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensorPose {
@@ -24,7 +35,6 @@ pub struct SensorPose {
 pub struct FlockTracker {
     config: Config,
     birds: Vec<Bird>,
-    sense: QuaternionSense,
     cycle: u64,
     last_address: Option<u8>,
     strangers: u64,
@@ -50,17 +60,13 @@ impl FlockTracker {
             last_cycle: 0,
         };
         let birds = config.addresses().iter().map(bird).collect();
-        Ok(Self { birds, config, sense: QuaternionSense::AsMatrix, cycle: 0, last_address: None, strangers: 0 })
-    }
-
-    /// Says which way quaternions turn, once that is known.
-    pub fn set_quaternion_sense(&mut self, sense: QuaternionSense) {
-        self.sense = sense;
+        Ok(Self { birds, config, cycle: 0, last_address: None, strangers: 0 })
     }
 
     /// The pose in a record that came whole at a moment, `missed` others in pieces before it; `None` for the record of a
     /// unit that was not asked for, which is counted.
-    pub fn process(&mut self, record: &Record, layout: &Layout, arrival_nanos: i64, missed: u32) -> Option<SensorPose> {
+    pub fn process(&mut self, heard: &Heard, arrival_nanos: i64, missed: u32) -> Option<SensorPose> {
+        let Heard { record, layout, sense } = heard;
         self.count_cycle(record.address, missed);
         let address = if layout.group { record.address } else { self.birds.first()?.address };
         let Some(sensor) = self.birds.iter().position(|bird| bird.address == address) else {
@@ -75,7 +81,7 @@ impl FlockTracker {
         // The units' records follow one another on the line: this one's own, and those of the lower addresses.
         let wire = wire_nanos(layout.bytes() * (sensor + 1), self.config.baud);
         let stamp_nanos = undelayed.nanos - wire - position_latency;
-        let reading = Reading::of(record, self.config.scale_inches, self.sense);
+        let reading = Reading::of(record, self.config.scale_inches, *sense);
         let mut pose = match reading {
             Ok(reading) => measured(&self.config, bird, reading, stamp_nanos),
             Err(reason) => lost(reason),
@@ -152,7 +158,8 @@ fn judge(config: &Config, pose: &mut Pose, record: &Record, undelayed: Undelayed
     let mut reasons = Vec::new();
     let distance = Vector3::from(pose.world_from_body.translation_m).norm();
     if distance > config.good_to_m {
-        reasons.push(format!("{distance:.2} m from the transmitter; the data sheet holds to {:.2} m", config.good_to_m));
+        reasons
+            .push(format!("{distance:.2} m from the transmitter; the data sheet holds to {:.2} m", config.good_to_m));
     }
     if record.metal >= config.most_metal {
         let growth = f64::from(record.metal) / f64::from(config.most_metal);

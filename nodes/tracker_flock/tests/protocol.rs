@@ -75,7 +75,11 @@ fn the_same_pose_in_all_formats() {
         let angle = reading.rotation.unwrap().angle_to(&turned());
         assert!(angle < 5e-4, "{format:?}: {angle} rad from az 30, el -10, roll 90");
     }
-    let double = Reading::of(&decoded(&ANGLES, Layout::plain(Format::PositionAngles))[0], Scale::Inches72, QuaternionSense::AsMatrix);
+    let double = Reading::of(
+        &decoded(&ANGLES, Layout::plain(Format::PositionAngles))[0],
+        Scale::Inches72,
+        QuaternionSense::AsMatrix,
+    );
     assert!((double.unwrap().position_m.unwrap() - 2.0 * position).abs().max() < 2.4e-4);
 }
 

@@ -25,14 +25,8 @@ pub(super) struct Unit {
     measured: Option<(Vector3<f64>, UnitQuaternion<f64>)>,
 }
 
-const HALVES: [Hemisphere; 6] = [
-    Hemisphere::Forward,
-    Hemisphere::Aft,
-    Hemisphere::Upper,
-    Hemisphere::Lower,
-    Hemisphere::Left,
-    Hemisphere::Right,
-];
+const HALVES: [Hemisphere; 6] =
+    [Hemisphere::Forward, Hemisphere::Aft, Hemisphere::Upper, Hemisphere::Lower, Hemisphere::Left, Hemisphere::Right];
 /// Where the filter's ranges end, in inches.
 const RANGE_INCHES: [f64; 6] = [17.0, 22.0, 27.0, 34.0, 42.0, 54.0];
 
@@ -124,7 +118,10 @@ impl Unit {
     pub fn record(&self, config: &EmulatorConfig, group: bool) -> (Record, Layout) {
         let layout = Layout { format: self.format, button: self.button, metal: self.metal, group };
         let Some((position, rotation)) = self.measured else {
-            return (Record { format: self.format, words: [0; 12], button: 0, metal: 0, address: self.address }, layout);
+            return (
+                Record { format: self.format, words: [0; 12], button: 0, metal: 0, address: self.address },
+                layout,
+            );
         };
         let half = HALVES.into_iter().find(|half| half.code() == self.hemisphere).unwrap_or_default();
         let position = reported(half, position);

@@ -27,10 +27,14 @@ impl DeviceError {
             0 => "no error",
             1 => "its memory fails its own test: the unit needs repair",
             2 => "its settings cannot be stored: the unit needs repair",
-            3 => "its board is not calibrated or does not answer: switch it off and on; if that does not help it needs repair",
+            3 => {
+                "its board is not calibrated or does not answer: switch it off and on; if that does not help it needs repair"
+            }
             4 => "no transmitter, or its memory cannot be read: switch off, plug the transmitter in firmly, switch on",
             5 => "no sensor, or its memory cannot be read: switch off, plug the sensor in firmly, switch on",
-            6 => "it got a command that it does not know: bytes are lost towards it; lower the baud rate or shorten the cable",
+            6 => {
+                "it got a command that it does not know: bytes are lost towards it; lower the baud rate or shorten the cable"
+            }
             7 => "it is not the master: the unit on the serial line must have address 1",
             8 => "no bird can be reached from the master: check the FBB cables and that all units fly",
             9 => "the flock is not configured: check `units`, the number of boxes",

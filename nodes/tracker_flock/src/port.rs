@@ -1,0 +1,208 @@
+//! The flock at the other end of a line: set up from any state, and listened to.
+
+mod examination;
+
+use crate::config::Config;
+use crate::protocol::address::addressed;
+use crate::protocol::commands::{self, POINT, Step};
+use crate::protocol::decoder::Decoder;
+use crate::protocol::reading::{QuaternionSense, Reading, settle_sense};
+use crate::protocol::records::{Format, Layout, Record};
+use crate::tracker::Heard;
+use examination::{Examination, Found};
+use serial_line::{Device, Heard as HeardAt, Line, LineSettings, Tally, Trouble};
+use std::time::Duration;
+
+/// The manual's times for a reset by RTS: high for so long, and quiet for so long behind it.
+const RESET_HIGH: Duration = Duration::from_secs(1);
+const START_UP: Duration = Duration::from_secs(2);
+/// Answers come within a cycle or two, at the slowest line within a few more.
+pub(crate) const ANSWER: Duration = Duration::from_millis(300);
+const QUIET: Duration = Duration::from_millis(60);
+const NEVER_QUIET: Duration = Duration::from_millis(700);
+/// So often a still sensor is looked for when the quaternion's sense is not known.
+const SENSE_TRIES: usize = 3;
+
+/// A flock, as `serial_line::Session` listens to it.
+pub struct Flock {
+    config: Config,
+    layout: Layout,
+    decoder: Decoder,
+    sense: QuaternionSense,
+    tried_before: bool,
+}
+
+impl Flock {
+    /// The flock of a configuration that was checked.
+    pub fn new(config: Config) -> Self {
+        let layout = Layout { metal: config.metal, ..Layout::plain(config.output) };
+        Self { layout, decoder: Decoder::new(layout), sense: QuaternionSense::AsMatrix, tried_before: false, config }
+    }
+
+    /// How its port is opened.
+    pub fn line_settings(&self) -> LineSettings {
+        // DTR low would hold all output; RTS high would hold the bird in standby.
+        LineSettings { path: self.config.port.clone(), baud: self.config.baud, rts: self.config.raise_rts, dtr: true }
+    }
+
+    fn wake(&mut self, line: &mut Line) -> Result<(), Trouble> {
+        let wired = line.has_modem_lines();
+        if self.config.reset && wired {
+            line.set_rts(true);
+            line.pause(RESET_HIGH)?;
+            line.set_rts(false);
+            line.pause(START_UP)?;
+        } else if self.tried_before && wired {
+            // Systems raise RTS as they open a port: with a fully wired cable that has just reset the bird.
+            line.pause(START_UP)?;
+        }
+        self.tried_before = true;
+        Ok(())
+    }
+
+    /// Ends the stream and lets it run dry: answers to EXAMINE have no mark of their own.
+    fn hush(&self, line: &mut Line) -> Result<(), Trouble> {
+        line.write(&[POINT])?;
+        if line.drain(QUIET, NEVER_QUIET)? { Ok(()) } else { Err(Trouble::Device(self.garbage(&[]))) }
+    }
+
+    fn carry_out(line: &mut Line, steps: &[Step]) -> Result<(), Trouble> {
+        for step in steps {
+            line.write(&step.send)?;
+            line.pause(step.wait)?;
+        }
+        Ok(())
+    }
+
+    /// All that have a sensor speak in group mode, so all are told the same format.
+    fn choose_format(&mut self, line: &mut Line, found: &Found, format: Format) -> Result<(), Trouble> {
+        for &address in &found.with_sensor {
+            Self::carry_out(line, &[commands::format(address, format)])?;
+        }
+        self.layout.format = format;
+        Ok(())
+    }
+
+    /// One record of one unit, outside group mode.
+    fn point(&self, line: &mut Line, address: u8) -> Result<Option<Record>, Trouble> {
+        line.drain(QUIET, NEVER_QUIET)?;
+        let bytes = line.ask(&addressed(address, &[POINT]), self.layout.bytes(), ANSWER)?;
+        let mut decoder = Decoder::new(self.layout);
+        Ok(bytes.iter().find_map(|&byte| decoder.push(byte)))
+    }
+
+    /// Reads a still sensor as matrix and as quaternion. When that does not tell, matrices are sent instead: their sense
+    /// was never in doubt. What was settled, in words.
+    fn settle(&mut self, line: &mut Line, found: &Found) -> Result<String, Trouble> {
+        let output = self.config.output;
+        let address = self.config.addresses().first().copied().unwrap_or(0);
+        for _ in 0..SENSE_TRIES {
+            let mut turns = [None, None];
+            for (turn, format) in turns.iter_mut().zip([Format::PositionMatrix, Format::PositionQuaternion]) {
+                self.choose_format(line, found, format)?;
+                let record = self.point(line, address)?;
+                let read = |record| Reading::of(&record, self.config.scale_inches, QuaternionSense::AsMatrix).ok();
+                *turn = record.and_then(read).and_then(|reading| reading.rotation);
+            }
+            let [Some(matrix), Some(quaternion)] = turns else { continue };
+            if let Some(sense) = settle_sense(&matrix, &quaternion) {
+                self.sense = sense;
+                self.choose_format(line, found, output)?;
+                return Ok(match sense {
+                    QuaternionSense::AsMatrix => ", quaternions turn as the matrix does".to_owned(),
+                    QuaternionSense::Inverse => ", quaternions turn against the matrix, and are inverted".to_owned(),
+                });
+            }
+        }
+        self.choose_format(line, found, Format::PositionMatrix)?;
+        Ok(", matrices are sent: the sensor moved or stood straight, so the quaternion's sense could not be settled"
+            .to_owned())
+    }
+}
+
+impl Device for Flock {
+    type Record = Heard;
+
+    fn set_up(&mut self, line: &mut Line) -> Result<String, Trouble> {
+        self.wake(line)?;
+        self.hush(line)?;
+        let mut examination = Examination { line, config: &self.config };
+        let greeting = examination.greet()?;
+        if self.config.is_group() {
+            Self::carry_out(line, &[commands::group_mode(false)])?;
+            Self::carry_out(line, &commands::auto_configuration(self.config.unit_count()))?;
+        }
+        line.drain(QUIET, NEVER_QUIET)?;
+        let found = Examination { line, config: &self.config }.units(greeting)?;
+        Self::carry_out(line, &commands::settings(&self.config))?;
+        let mut words = found.words.clone();
+        self.layout.group = false;
+        if self.config.output.has_quaternion() {
+            words += &self.settle(line, &found)?;
+        } else {
+            self.choose_format(line, &found, self.config.output)?;
+        }
+        if self.config.is_group() {
+            Self::carry_out(line, &[commands::group_mode(true)])?;
+            self.layout.group = true;
+        }
+        line.drain(QUIET, NEVER_QUIET)?;
+        self.decoder.expect(self.layout);
+        Self::carry_out(line, &commands::stream(self.config.report_every))?;
+        Ok(words)
+    }
+
+    fn take(&mut self, bytes: &[u8], each: &mut dyn FnMut(HeardAt<Heard>)) {
+        for (k, &byte) in bytes.iter().enumerate() {
+            if let Some(record) = self.decoder.push(byte) {
+                let missed = self.decoder.take_missed();
+                let heard = Heard { record, layout: self.layout, sense: self.sense };
+                each(HeardAt { record: heard, behind: bytes.len() - 1 - k, missed });
+            }
+        }
+    }
+
+    fn tally(&self) -> Tally {
+        Tally {
+            records: self.decoder.records(),
+            broken: self.decoder.broken(),
+            skipped_bytes: self.decoder.skipped_bytes(),
+        }
+    }
+
+    fn most_silence(&self) -> Duration {
+        let period = f64::from(self.config.report_every) / self.config.rate_hz;
+        Duration::from_secs_f64((4.0 * period).max(0.7))
+    }
+
+    fn silence(&self) -> String {
+        silence(&self.config)
+    }
+
+    fn garbage(&self, sample: &[u8]) -> String {
+        garbage(&self.config, sample)
+    }
+}
+
+pub(crate) fn silence(config: &Config) -> String {
+    format!(
+        "the bird on {} says nothing: is it on, and its switch at FLY? A fully wired cable holds it in standby while RTS is \
+         high (cut all wires but 2, 3 and 5, or leave `raise_rts = false`); or its baud rate is not {}",
+        config.port.display(),
+        config.baud
+    )
+}
+
+pub(crate) fn garbage(config: &Config, sample: &[u8]) -> String {
+    let port = config.port.display();
+    if sample.windows(2).any(|two| two == b"OK") {
+        return format!(
+            "the bird on {port} is in test mode: set its switch 8 to fly (off), and FLY/STBY once to and fro"
+        );
+    }
+    format!(
+        "what comes from {port} is no record of a bird: set `baud` (now {}) as its switches 1 to 3 have it, and let nothing \
+         else use the port",
+        config.baud
+    )
+}
