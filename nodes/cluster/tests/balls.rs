@@ -147,7 +147,7 @@ fn nothing_in_gives_nothing_out_and_aiming_keeps_nothing() {
 #[test]
 fn balls_are_as_large_as_the_places_are_uncertain_and_shrink_when_a_revision_knows_better() {
     let mut clusterer = BallClusterer::new(Config::default()).unwrap();
-    let dome = dome(20_000);
+    let dome = dome(200_000);
     clusterer.insert(&scan(0, dome.clone()));
     let exact = clusterer.whole().points.len();
     // 1 degree at 50 mm and 1 mm: D = 2 sqrt(0.87^2 + 1 + 0.1^2) mm.
