@@ -4,12 +4,17 @@
 use anyhow::{Context as _, Result};
 use std::path::{Path, PathBuf};
 
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 11] = [
     ("launch/demo.toml", include_str!("../../demo.toml")),
     ("launch/pipeline.toml", include_str!("../../pipeline.toml")),
     ("config/rigs/fine.toml", include_str!("../../../config/rigs/fine.toml")),
     ("config/rigs/paper.toml", include_str!("../../../config/rigs/paper.toml")),
+    ("config/rigs/field.toml", include_str!("../../../config/rigs/field.toml")),
+    ("config/rigs/mixed.toml", include_str!("../../../config/rigs/mixed.toml")),
+    ("config/rigs/flock.toml", include_str!("../../../config/rigs/flock.toml")),
+    ("config/rigs/rough.toml", include_str!("../../../config/rigs/rough.toml")),
     ("config/scenes/cow.toml", include_str!("../../../config/scenes/cow.toml")),
+    ("config/scenes/one_way.toml", include_str!("../../../config/scenes/one_way.toml")),
     ("config/scenes/tabletop.toml", include_str!("../../../config/scenes/tabletop.toml")),
 ];
 

@@ -50,5 +50,5 @@ pub use hand::{Hand, HandError, HandSection};
 pub use scene::{ALL, Kind, ObjectSection, Scene, SceneError, SceneFile, Surface, TableSection, Texture, Up};
 pub use setup::{Known, Setup, SetupError};
 pub use shape::{Pattern, Primitive};
-pub use simulation::{Simulation, SimulationError};
+pub use simulation::{HandEyeError, Simulation, SimulationError};
 pub use tracker::{Tracker, TrackerSection};

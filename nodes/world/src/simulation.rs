@@ -2,7 +2,8 @@
 
 use crate::TrackerSection;
 use crate::optics::OpticsSection;
-use geometry::Rig;
+use geometry::{METRES_PER_MM, Rig};
+use nalgebra::{Isometry3, Vector3};
 use serde::Deserialize;
 
 /// `[simulation]`: each section has documented defaults.
@@ -13,6 +14,37 @@ pub struct Simulation {
     pub optics: OpticsSection,
     /// `[simulation.tracker]`: errors of the pose tracker.
     pub tracker: TrackerSection,
+    /// `[simulation.hand_eye_error]`: how wrong the rig file's `[body_from_camera]` is.
+    pub hand_eye_error: HandEyeError,
+}
+
+/// What a calibration got wrong: where the camera truly is, seen from where the rig file has it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct HandEyeError {
+    /// Along the camera's axes.
+    pub translation_mm: [f64; 3],
+    /// About the camera's axes: one rotation about the vector, as large as it is long.
+    pub rotation_deg: [f64; 3],
+}
+
+impl HandEyeError {
+    /// said_camera_from_true_camera.
+    pub fn said_from_true(&self) -> Isometry3<f64> {
+        let metres = Vector3::from(self.translation_mm) * METRES_PER_MM;
+        let radians = Vector3::from(self.rotation_deg).map(f64::to_radians);
+        Isometry3::new(metres, radians)
+    }
+
+    fn check(&self) -> Result<(), SimulationError> {
+        let limits = [("translation_mm", &self.translation_mm, 100.0), ("rotation_deg", &self.rotation_deg, 30.0)];
+        for (key, values, most) in limits {
+            if let Some(&value) = values.iter().find(|value| !(value.abs() <= most)) {
+                return Err(SimulationError::HandEye { key, value, most });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A section that cannot be read.
@@ -31,6 +63,16 @@ pub enum SimulationError {
         /// What it should hold.
         wanted: &'static str,
     },
+    /// A calibration that cannot be so wrong.
+    #[error("[simulation.hand_eye_error] {key}: {value} is more than {most} either way")]
+    HandEye {
+        /// The key.
+        key: &'static str,
+        /// What it holds.
+        value: f64,
+        /// The limit.
+        most: f64,
+    },
 }
 
 impl Simulation {
@@ -43,6 +85,7 @@ impl Simulation {
             }
         };
         simulation.tracker.check()?;
+        simulation.hand_eye_error.check()?;
         Ok(simulation)
     }
 }

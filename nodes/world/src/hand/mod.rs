@@ -12,7 +12,7 @@ mod sway;
 
 pub use section::HandSection;
 
-use crate::Scene;
+use crate::{Scene, Simulation, SimulationError};
 use aim::{Aim, Reach};
 use geometry::{METRES_PER_MM, Rig, RigError};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
@@ -32,6 +32,9 @@ pub enum HandError {
     /// The handset cannot measure.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// What the rig file tells of the simulation cannot be.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
 }
 
 /// The sweep.
@@ -70,9 +73,10 @@ impl Hand {
         }
         let section = scene.hand;
         let reach = reach(scene, rig)?;
+        let error = Simulation::from_rig(rig)?.hand_eye_error;
         let passes = if section.two_passes { 2.0 } else { 1.0 };
         let budget_m = section.speed_limit_mm_per_s * METRES_PER_MM * seconds / passes;
-        let strokes = plan::plan(&reach, stripe_length_m(rig, reach.stand_off_m), budget_m);
+        let strokes = plan::plan(&reach, stripe_length_m(rig, reach.stand_off_m), budget_m, section.crossing_strokes);
         let [mm, degrees] = [METRES_PER_MM, 1f64.to_radians()];
         let human =
             |rms: f64, band: [f64; 2], stream: u64| Sway::new(rms, band, seed.wrapping_mul(16).wrapping_add(stream));
@@ -85,7 +89,7 @@ impl Hand {
             strokes,
             duration_s: seconds,
             two_passes: section.two_passes,
-            camera_from_body: rig.body_from_camera()?.inverse(),
+            camera_from_body: (rig.body_from_camera()? * error.said_from_true()).inverse(),
             pace: human(section.pace_spread * one_axis, PACE_HZ, 0),
             stand_off: human(section.stand_off_spread_mm * mm * one_axis, STAND_OFF_HZ, 1),
             sway: [human(section.sway_mm * mm, SWAY_HZ, 2), human(section.sway_deg * degrees, SWAY_HZ, 3)],

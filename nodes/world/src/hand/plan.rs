@@ -36,12 +36,13 @@ struct Round {
 }
 
 /// As many strokes as the budget of way allows, the most useful first, but at least all around; `stripe_m` is the stripe's
-/// usable length.
-pub fn plan(reach: &Reach, stripe_m: f64, budget_m: f64) -> Vec<Stroke> {
+/// usable length. Without `crossing` there are rounds only.
+pub fn plan(reach: &Reach, stripe_m: f64, budget_m: f64, crossing: bool) -> Vec<Stroke> {
     let [first, other_side] =
         [(LEFT, 0.0), (RIGHT, HIGHER)].map(|(laser, higher)| rounds(reach, stripe_m, laser, higher));
-    let quarters = overs(reach, stripe_m, [0.0, FRAC_PI_2]);
-    let diagonals = overs(reach, stripe_m, [FRAC_PI_4, 3.0 * FRAC_PI_4]);
+    let over = |azimuths| if crossing { overs(reach, stripe_m, azimuths) } else { Vec::new() };
+    let quarters = over([0.0, FRAC_PI_2]);
+    let diagonals = over([FRAC_PI_4, 3.0 * FRAC_PI_4]);
     let mut strokes = Vec::new();
     first.into_iter().for_each(|to| go_on(reach, &mut strokes, to));
     if way_m(&strokes) + quarters.first().map_or(0.0, |(from, to)| Stroke::new(reach, *from, *to).length_m) > budget_m {

@@ -23,6 +23,8 @@ pub struct HandSection {
     pub tremor_deg: f64,
     /// The hand hurries no more than this; in too short a time it leaves out the last strokes.
     pub speed_limit_mm_per_s: f64,
+    /// Also over the top, with the stripe across that of the rounds. Without these nothing ties one round to the next.
+    pub crossing_strokes: bool,
     /// The paper's two passes, first the shape, then the colour, each in half the time; else both in one.
     pub two_passes: bool,
 }
@@ -38,6 +40,7 @@ impl Default for HandSection {
             tremor_mm: 0.3,
             tremor_deg: 0.2,
             speed_limit_mm_per_s: 220.0,
+            crossing_strokes: true,
             two_passes: false,
         }
     }
