@@ -162,6 +162,17 @@ fn silence_is_told_and_not_invented() {
     readings.extend((0..4).map(|i| Tracker::PAPER.read(&Hand::USUAL, (60_000 + 10 * i) * MS, &mut noise)));
     let way = fit(&readings);
     assert_eq!((way.counts().stranded, way.span_nanos().1), (4, 39_990 * MS));
+    // Nor do more that are all at odds with one another; they spoil nothing before them.
+    for (i, wild) in (0..9).zip([0.0, 3.0, -2.0, 5.0, 0.0, 9.0, -7.0, 1.0, 30.0]) {
+        let mut reading = Tracker::PAPER.read(&Hand::USUAL, (80_000 + 10 * i) * MS, &mut noise);
+        reading.pose.translation.x += wild;
+        readings.push(reading);
+    }
+    let way = fit(&readings);
+    let at = (20_100..39_900).step_by(7).filter_map(|ms| Some((ms * MS, way.at(ms * MS)?)));
+    let found = rms(&Hand::USUAL, at);
+    println!("before wild readings: {found:.3?} {:?}", way.counts());
+    assert!(found.0 < 0.6 && found.1 < 0.9);
 }
 
 #[test]
@@ -183,6 +194,32 @@ fn outliers_are_left_out_and_counted() {
         println!("without outliers {clean:.4?}, with {found:.4?}");
         assert!(found.0 < 1.1 * clean.0 && found.1 < 1.1 * clean.1);
     }
+}
+
+#[test]
+fn readings_count_by_what_the_tracker_says_of_them() {
+    let (mut noise, bad) = (Noise(5), Tracker { noise_m: 7.5e-3, noise_deg: 15.0 });
+    let kind = |i: i64| if i % 3 == 1 { bad } else { Tracker::PAPER };
+    let all: Vec<TimedPose> = (0..3000).map(|i| kind(i).read(&Hand::USUAL, i * 10 * MS, &mut noise)).collect();
+    let usual = |r: &&TimedPose| r.position_sigma_m < 1e-3;
+    let good: Vec<TimedPose> = all.iter().filter(usual).copied().collect();
+    let (with, without) = (fit(&all), fit(&good));
+    let sigma = with.position_sigma_m().norm() / 1.5e-3;
+    let (with, without) = (smooth_rms(&Hand::USUAL, &with, 29), smooth_rms(&Hand::USUAL, &without, 29));
+    println!("with bad readings {with:.3?}, without {without:.3?}, sigma found over sigma of the usual {sigma:.3}");
+    assert!(with.0 < 1.02 * without.0 && with.1 < 1.02 * without.1 && (0.95..1.05).contains(&sigma));
+}
+
+#[test]
+fn the_spacing_of_knots_does_not_choose_the_stiffness() {
+    let readings = Tracker::PAPER.readings(&Hand::USUAL, 30, 3);
+    let with = |knot_ms| SmoothTrajectory::fit(&readings, &Smoothing { knot_ms, ..Smoothing::default() }).unwrap();
+    let (fine, coarse) = (with(20.0), with(50.0));
+    let ratio = fine.lambda_position() / coarse.lambda_position() / 2.5f64.powi(5);
+    println!("lambda over (d / d')^5: {ratio:.3}");
+    assert!((0.7..1.4).contains(&ratio) && coarse.knot_nanos() == 50 * MS);
+    let (fine, coarse) = (smooth_rms(&Hand::USUAL, &fine, 29), smooth_rms(&Hand::USUAL, &coarse, 29));
+    assert!((fine.0 / coarse.0 - 1.0).abs() < 0.02 && (fine.1 / coarse.1 - 1.0).abs() < 0.02);
 }
 
 #[test]

@@ -19,7 +19,8 @@ pub struct Config {
     /// source at fast pace runs no farther than 400 ms ahead.
     pub smooth_lag_ms: f64,
     /// With no lag, the smooth pose is taken from readings up to so long before the profile when they tell it better than
-    /// the next reading would: so a profile need not wait for a noisy tracker.
+    /// the next reading would: so a profile need not wait for a noisy tracker. Each 5 ms cost 0.1 mm and 0.1 degrees with
+    /// the paper's tracker.
     pub predict_ms: f64,
     /// Readings of degraded quality are used as well, with the sigma that they state.
     pub use_degraded: bool,
@@ -33,7 +34,7 @@ impl Default for Config {
             most_waiting: 4096,
             smooth: true,
             smooth_lag_ms: 0.0,
-            predict_ms: 10.0,
+            predict_ms: 5.0,
             use_degraded: true,
         }
     }

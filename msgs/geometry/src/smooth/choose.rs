@@ -11,7 +11,7 @@ const STEP: f64 = 0.5;
 /// Errors beyond so many medians count as if they were this large, so that outliers do not choose.
 const CAP: f64 = 3.0;
 
-/// The lambda for all runs together, and where it stood among those tried; `None` when nothing can be solved.
+/// The lambda for all runs together; `None` when nothing can be solved.
 pub(super) fn choose<const D: usize>(runs: &[Run<D>]) -> Option<f64> {
     let score = |step: usize| score(runs, decade(step as f64)).unwrap_or(f64::INFINITY);
     let scores: Vec<f64> = (0..STEPS).map(score).collect();
@@ -35,7 +35,8 @@ fn vertex(scores: &[f64], best: usize) -> f64 {
 fn score<const D: usize>(runs: &[Run<D>], lambda: f64) -> Option<f64> {
     let mut squares = Vec::with_capacity(runs.iter().map(|run| run.samples.len()).sum());
     for run in runs {
-        let spline = run.solve(lambda)?;
+        // A run that lost too many readings as outliers says nothing.
+        let Some(spline) = run.solve(lambda) else { continue };
         let active = run.samples.iter().zip(run.residuals(&spline)).filter(|(sample, _)| sample.active);
         squares.extend(active.map(|(sample, r)| sample.weight * r.off.norm_squared() / r.own_share().powi(2)));
     }

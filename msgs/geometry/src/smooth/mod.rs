@@ -8,6 +8,9 @@
 //! the sum of squared residuals over the readings less the spline's degrees of freedom. All is banded, so time grows
 //! linearly with the readings.
 //!
+//! [`SmoothTrajectory`] goes through all readings of a scan; [`FixedLagSmoother`] answers while they come, from the
+//! readings of the last second, with the stiffness and noise of the last four.
+//!
 //! What no smoothing can do: errors that change as slowly as the hand moves stay, and are in none of the sigmas here.
 //!
 //! ```
@@ -46,7 +49,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Smoothing {
-    /// Between two knots. The tremor of a hand has up to 12 Hz, which knots of 50 ms cannot follow.
+    /// Between two knots. The tremor of a hand has up to 12 Hz, which knots of 50 ms cannot follow: a tracker of 0.05 mm
+    /// comes out at 0.03 mm with 20 ms and at 0.2 mm with 50. Stiffness is lambda's business, so a noisy tracker gains
+    /// nothing by wider ones.
     pub knot_ms: f64,
     /// There is no pose where the readings were silent for longer: the hand may have been anywhere.
     pub most_gap_ms: f64,
