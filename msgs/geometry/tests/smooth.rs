@@ -173,6 +173,8 @@ fn silence_is_told_and_not_invented() {
     let found = rms(&Hand::USUAL, at);
     println!("before wild readings: {found:.3?} {:?}", way.counts());
     assert!(found.0 < 0.6 && found.1 < 0.9);
+    let sigma = way.position_sigma_m().norm() / 1.5e-3;
+    assert!((0.95..1.05).contains(&sigma), "{sigma}");
 }
 
 #[test]

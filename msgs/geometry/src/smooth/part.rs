@@ -1,6 +1,6 @@
 //! Position or rotation at one moment, from the readings around it.
 
-use super::outliers;
+use super::outliers::{self, Known};
 use super::run::{Run, Sample};
 use super::track::{LEAST_READINGS, SPLIT_NANOS, Track};
 use super::{Smoothing, readings};
@@ -43,9 +43,10 @@ impl Part {
         }
         // A quaternion is off by half the angle.
         let noise = if D == 4 { 0.5 * self.sigma } else { self.sigma };
+        let known = Known { least: noise, ..Known::NOTHING };
         let mut run = Run::new(samples, config.knot_nanos(), stamp_nanos)?;
-        outliers::mark_gross(&mut run, config.outlier_sigmas, noise);
-        let spline = outliers::mark(&mut run, self.lambda, config.outlier_sigmas, noise)?;
+        outliers::mark_gross(&mut run, config.outlier_sigmas, known);
+        let spline = outliers::mark(&mut run, self.lambda, config.outlier_sigmas, known)?;
         let behind = run.samples.partition_point(|s| s.stamp_nanos < stamp_nanos);
         let beside_outlier = run.samples[behind.saturating_sub(1)..].iter().take(2).any(|sample| !sample.active);
         Some(Found { value: spline.at(stamp_nanos)?, variance: spline.variance(stamp_nanos)?, beside_outlier })

@@ -1,7 +1,7 @@
 //! One part of the pose, position or rotation, over all runs of readings.
 
 use super::choose::choose;
-use super::outliers;
+use super::outliers::{self, Known};
 use super::run::{Run, Sample, Spline};
 use super::{Silence, Smoothing};
 use nalgebra::{SVector, Vector3};
@@ -45,13 +45,14 @@ impl<const D: usize> Track<D> {
             // Readings that all but coincide hold no curve.
             .filter(|run| run.solve(1.0).is_some())
             .collect();
-        runs.iter_mut().for_each(|run| outliers::mark_gross(run, config.outlier_sigmas, 0.0));
+        runs.iter_mut().for_each(|run| outliers::mark_gross(run, config.outlier_sigmas, Known::NOTHING));
         let lambda = choose(&runs)?;
         let left_out =
             |runs: &[Run<D>]| -> Vec<bool> { runs.iter().flat_map(|r| &r.samples).map(|s| !s.active).collect() };
         let gross = left_out(&runs);
+        let known = Known::from(&runs, lambda);
         for run in &mut runs {
-            outliers::mark(run, lambda, config.outlier_sigmas, 0.0);
+            outliers::mark(run, lambda, config.outlier_sigmas, known);
         }
         let lambda = if left_out(&runs) == gross { lambda } else { choose(&runs)? };
         let (mut squares, mut own, mut used) = (Vector3::zeros(), 0.0, 0);
