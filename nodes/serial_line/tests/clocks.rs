@@ -92,7 +92,7 @@ fn a_silence_starts_the_count_anew_and_a_burst_does_not() {
 #[test]
 fn a_devices_own_clock_is_told_in_ours_to_its_own_coarseness() {
     for (drift, zero) in [(0.0, 0u32), (80e-6, u32::MAX - 5000), (-60e-6, 77)] {
-        let mut clock = DeviceClock::new(1e6);
+        let mut clock = DeviceClock::new(1e6, None);
         let mut faults = late(6, 10);
         let mut errors = Vec::new();
         for k in 0..6000_i64 {
@@ -107,8 +107,26 @@ fn a_devices_own_clock_is_told_in_ours_to_its_own_coarseness() {
 }
 
 #[test]
+fn even_frames_are_known_better_than_the_ticks_that_tell_them() {
+    // 240 a second as said; twice as slow as said, so that each step is two frames; 100 a second, which is neither.
+    for (period, said, best) in [(4_166_667, 240.0, 0.15), (8_333_333, 240.0, 0.15), (10_000_000, 240.0, 0.75)] {
+        let mut clock = DeviceClock::new(1e6, Some(1e9 / said));
+        let mut faults = late(7, 10);
+        let mut errors = Vec::new();
+        for k in (0..6000_i64).filter(|k| k % 100 != 7) {
+            let truth = k * period + 321_000;
+            let ticks = (truth as f64 * 1.00005 / 1e6) as u32;
+            let arrival = faults.deliver(truth, &[0]).due_nanos;
+            errors.push((clock.undelay(ticks, arrival).unwrap().nanos - truth) as f64);
+        }
+        let (rms, most) = rms_ms(&errors, 500);
+        assert!(rms < best, "{period} ns, said to be {said} a second: {rms} ms rms, {most} ms at most");
+    }
+}
+
+#[test]
 fn a_time_stamp_with_a_bit_error_is_refused_and_a_clock_that_was_set_is_followed() {
-    let mut clock = DeviceClock::new(1e6);
+    let mut clock = DeviceClock::new(1e6, None);
     for k in 0..500_i64 {
         assert!(clock.undelay(4 * k as u32, k * 4_000_000).is_some());
     }
@@ -144,7 +162,7 @@ proptest! {
 
     #[test]
     fn any_ticks_give_no_falling_stamps(steps in prop::collection::vec((0i64..2_000_000_000, any::<u32>()), 1..200)) {
-        let mut clock = DeviceClock::new(1e6);
+        let mut clock = DeviceClock::new(1e6, None);
         let (mut now, mut last) = (0, i64::MIN);
         for (step, ticks) in steps {
             now += step;

@@ -1,0 +1,162 @@
+//! Records to poses, each with its stamp and what is known of its error.
+
+use crate::config::{Config, ConfigError, DataSheet};
+use crate::protocol::records::{Layout, Record};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serial_line::{DeviceClock, RateLock, Undelayed, wire_nanos};
+use wire::{Clock, Header, Pose, Quality, RigidPose};
+
+const INCH_M: f64 = 0.0254;
+/// The device's clock ticks in milliseconds.
+const TICK_NANOS: f64 = 1e6;
+
+/// A pose of one station. Its stamp is on the clock of the arrivals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StationPose {
+    /// Which of the configured stations, from 0.
+    pub sensor: usize,
+    /// The pose; scan, phase and sequence number are for the node to fill in.
+    pub pose: Pose,
+    /// How much the arrival was moved: jitter, wire and latency, in nanoseconds.
+    pub removed_nanos: i64,
+}
+
+/// Turns records into poses.
+#[derive(Debug, Clone)]
+pub struct PolhemusTracker {
+    config: Config,
+    sheet: DataSheet,
+    record_bytes: usize,
+    stations: Vec<Station>,
+    round: u64,
+    last_station: Option<u8>,
+    strangers: u64,
+}
+
+#[derive(Debug, Clone)]
+struct Station {
+    number: u8,
+    clock: StationClock,
+    last_round: u64,
+}
+
+#[derive(Debug, Clone)]
+enum StationClock {
+    /// Even steps, found from the arrivals.
+    Rate(RateLock),
+    /// The device's own.
+    Device(DeviceClock),
+}
+
+impl PolhemusTracker {
+    /// A tracker for the stations of a configuration.
+    pub fn new(config: Config) -> Result<Self, ConfigError> {
+        config.check()?;
+        let sheet = config.sheet();
+        let clock = || match config.family.has_clock() {
+            true => StationClock::Device(DeviceClock::new(TICK_NANOS, Some(1e9 / sheet.rate_hz))),
+            false => StationClock::Rate(RateLock::new(Some(1e9 / sheet.rate_hz))),
+        };
+        let station = |&number: &u8| Station { number, clock: clock(), last_round: 0 };
+        let stations = config.stations.iter().map(station).collect();
+        let record_bytes = Layout::of(config.family).bytes();
+        Ok(Self { stations, record_bytes, sheet, config, round: 0, last_station: None, strangers: 0 })
+    }
+
+    /// The pose in a record that came whole at a moment, `missed` others in pieces before it; `None` for the record of a
+    /// station that was not asked for, which is counted.
+    pub fn process(&mut self, record: &Record, arrival_nanos: i64, missed: u32) -> Option<StationPose> {
+        self.count_round(record.station, missed);
+        let Some(sensor) = self.stations.iter().position(|station| station.number == record.station) else {
+            self.strangers += 1;
+            return None;
+        };
+        let station = &mut self.stations[sensor];
+        let skipped = self.round.saturating_sub(station.last_round + 1);
+        station.last_round = self.round;
+        let undelayed = match &mut station.clock {
+            StationClock::Rate(lock) => Some(lock.undelay(arrival_nanos, u32::try_from(skipped).unwrap_or(u32::MAX))),
+            StationClock::Device(clock) => clock.undelay(record.time_stamp_ms, arrival_nanos),
+        };
+        // The stations' records follow one another on the line.
+        let wire = wire_nanos(self.record_bytes * (sensor + 1), self.config.baud);
+        let old = (self.sheet.latency_ms * 1e6) as i64;
+        let stamp_nanos = undelayed.map_or(arrival_nanos, |undelayed| undelayed.nanos) - wire - old;
+        let mut pose = measured(record);
+        pose.header = Header { stamp_nanos, clock: Clock::System, ..Header::default() };
+        self.judge(&mut pose, record, undelayed);
+        Some(StationPose { sensor, pose, removed_nanos: arrival_nanos - stamp_nanos })
+    }
+
+    /// The jitter that was taken from a station's arrivals in the last seconds: root mean square and the most.
+    pub fn jitter_nanos(&self, sensor: usize) -> Option<(f64, f64)> {
+        self.stations.get(sensor).map(|station| match &station.clock {
+            StationClock::Rate(lock) => lock.jitter_nanos(),
+            StationClock::Device(clock) => clock.jitter_nanos(),
+        })
+    }
+
+    /// Records so far of stations that were not asked for.
+    pub fn strangers(&self) -> u64 {
+        self.strangers
+    }
+
+    /// A round begins where the stations begin anew.
+    fn count_round(&mut self, station: u8, missed: u32) {
+        self.round += u64::from(missed) / self.stations.len() as u64;
+        if self.last_station.is_none_or(|last| station <= last) {
+            self.round += 1;
+        }
+        self.last_station = Some(station);
+    }
+
+    /// Sigma by distance and distortion, and why a pose is not as good as it could be.
+    fn judge(&self, pose: &mut Pose, record: &Record, undelayed: Option<Undelayed>) {
+        let mut reasons = Vec::new();
+        let distance = Vector3::from(pose.world_from_body.translation_m).norm();
+        // A dipole's field falls with r^3, so a change of r shows in it with r^-4.
+        let mut growth = (distance / self.sheet.good_to_m).max(1.0).powi(4);
+        if distance > self.sheet.good_to_m {
+            let good_to = self.sheet.good_to_m;
+            reasons.push(format!("{distance:.2} m from the source; the data sheet holds to {good_to:.2} m"));
+        }
+        let distortion = record.distortion.saturating_abs();
+        if distortion >= self.config.most_distortion {
+            growth *= f64::from(distortion) / f64::from(self.config.most_distortion);
+            reasons.push(format!("the field is bent (level {distortion}): metal is near"));
+        }
+        if record.error != b' ' {
+            let letter = char::from(record.error);
+            reasons.push(format!("station {} reports `{letter}`: see the errors in its manual", record.station));
+        }
+        if undelayed.is_some_and(|undelayed| !undelayed.settled) {
+            reasons.push("the clock is not settled yet".to_owned());
+        }
+        pose.position_sigma_m = [self.sheet.position_sigma_mm * 1e-3 * growth; 3];
+        pose.rotation_sigma_rad = [self.sheet.rotation_sigma_deg.to_radians() * growth; 3];
+        if undelayed.is_none() {
+            pose.quality = Quality::Lost;
+            reasons.push(format!("its time stamp, {} ms, does not follow", record.time_stamp_ms));
+        } else if !reasons.is_empty() {
+            pose.quality = Quality::Degraded;
+        }
+        pose.reason = reasons.join("; ");
+    }
+}
+
+fn measured(record: &Record) -> Pose {
+    let [w, x, y, z] = record.quaternion_wxyz.map(f64::from);
+    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    Pose {
+        header: Header::default(),
+        world_from_body: RigidPose {
+            translation_m: record.position_inches.map(|inches| f64::from(inches) * INCH_M),
+            rotation_wxyz: [rotation.w, rotation.i, rotation.j, rotation.k],
+        },
+        position_sigma_m: [0.0; 3],
+        rotation_sigma_rad: [0.0; 3],
+        rotation_lag_nanos: 0,
+        quality: Quality::Good,
+        reason: String::new(),
+    }
+}

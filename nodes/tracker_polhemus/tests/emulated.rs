@@ -1,0 +1,141 @@
+//! The driver against trackers that are played byte for byte behind a pseudo-terminal.
+
+#![cfg(feature = "serial")]
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
+use nalgebra::{UnitQuaternion, Vector3};
+use serial_line::{FaultsConfig, HostClock, News, Pty, Session};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+use tracker_polhemus::emulator::{EmulatorConfig, Mood, PolhemusEmulator, World};
+use tracker_polhemus::port::Polhemus;
+use tracker_polhemus::protocol::records::{Family, Record};
+use tracker_polhemus::{Config, PolhemusTracker, StationPose};
+
+/// Each station on a circle of its own, at 0.4 m/s.
+fn circle(station: u8, nanos: i64) -> (Vector3<f64>, UnitQuaternion<f64>) {
+    let t = nanos as f64 * 1e-9 * 2.0;
+    let position = Vector3::new(0.4 + 0.05 * f64::from(station), 0.2 * t.sin(), 0.2 * t.cos());
+    (position, UnitQuaternion::from_euler_angles(0.5, 0.3 * t.sin(), 0.2))
+}
+
+struct Rig {
+    session: Session<Record>,
+    tracker: PolhemusTracker,
+    news: Receiver<News>,
+}
+
+impl Rig {
+    fn start(config: Config, clock: HostClock) -> Self {
+        let device = Polhemus::new(config.clone());
+        let (say, news) = channel();
+        let settings = device.line_settings();
+        let session = Session::start(device, settings, clock, move |n| drop(say.send(n)));
+        Self { session, tracker: PolhemusTracker::new(config).unwrap(), news }
+    }
+
+    fn poses(&mut self, count: usize) -> Vec<StationPose> {
+        let (mut poses, started) = (Vec::new(), Instant::now());
+        while poses.len() < count && started.elapsed() < Duration::from_secs(20) {
+            let Some(arrived) = self.session.next(Duration::from_millis(50)) else { continue };
+            poses.extend(self.tracker.process(&arrived.record, arrived.nanos, arrived.missed));
+        }
+        assert_eq!(poses.len(), count, "{:?}", self.news.try_iter().collect::<Vec<_>>());
+        poses
+    }
+
+    fn trouble(&self) -> String {
+        loop {
+            if let News::Trouble(trouble) = self.news.recv_timeout(Duration::from_secs(10)).unwrap() {
+                return trouble.to_string();
+            }
+        }
+    }
+
+    fn streaming(&self) -> String {
+        loop {
+            if let News::Streaming(words) = self.news.recv_timeout(Duration::from_secs(10)).unwrap() {
+                return words;
+            }
+        }
+    }
+}
+
+fn plugged(
+    config: EmulatorConfig,
+    faults: FaultsConfig,
+    link: Option<&Path>,
+    clock: HostClock,
+) -> Pty<PolhemusEmulator> {
+    let world: World = Box::new(circle);
+    Pty::start(PolhemusEmulator::new(config, world), faults, clock, link).unwrap()
+}
+
+#[test]
+fn each_family_is_set_up_and_heard() {
+    for (family, name) in [(Family::Fastrak, "FASTRAK"), (Family::Liberty, "Liberty"), (Family::Patriot, "Patriot")] {
+        let clock = HostClock::start();
+        let faults = FaultsConfig { seed: 3, jitter_nanos: 3_000_000, lost_ppm: 100, ..FaultsConfig::default() };
+        let stations = vec![1, 2];
+        let config = Config { family, stations, ..Config::default() };
+        let rate_hz = config.sheet().rate_hz;
+        let emulator = EmulatorConfig { stations: 2, rate_hz, ..EmulatorConfig::of(family) };
+        let pty = plugged(emulator, faults, None, clock);
+        let mut rig = Rig::start(Config { port: pty.path().to_owned(), ..config }, clock);
+        assert!(rig.streaming().contains(name));
+        rig.poses(150);
+        for pose in rig.poses(60) {
+            let (truth, turned) = circle(pose.sensor as u8 + 1, pose.pose.header.stamp_nanos);
+            let rigid = pose.pose.world_from_body;
+            let off = (Vector3::from(rigid.translation_m) - truth).norm();
+            assert!(off < 5e-3, "{family:?}: {off} m, {} ms of time", off / 0.4 * 1e3);
+            let [w, x, y, z] = rigid.rotation_wxyz;
+            let rotation = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+            assert!(rotation.angle_to(&turned) < 0.01);
+        }
+    }
+}
+
+#[test]
+fn each_illness_is_its_own_sentence_and_is_survived() {
+    let clock = HostClock::start();
+    let pty = plugged(EmulatorConfig::of(Family::Liberty), FaultsConfig::default(), None, clock);
+    let mut rig = Rig::start(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
+    rig.poses(20);
+    for (mood, words) in [(Mood::Silent, "says nothing"), (Mood::WrongBaud, "no record of a Liberty")] {
+        pty.device().set_mood(mood);
+        assert!(rig.trouble().contains(words));
+        pty.device().set_mood(Mood::Well);
+        while !matches!(rig.news.try_recv(), Ok(News::Streaming(_))) {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        while rig.session.next(Duration::ZERO).is_some() {}
+        rig.poses(20);
+    }
+}
+
+#[test]
+fn a_port_that_is_pulled_and_plugged_in_again_goes_on() {
+    let clock = HostClock::start();
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("tracker");
+    let family = Family::Fastrak;
+    let pty = plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
+    let mut rig = Rig::start(Config { port: link.clone(), family, ..Config::default() }, clock);
+    rig.poses(50);
+    drop(pty);
+    assert!(rig.trouble().contains("went away"));
+    let _again = plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
+    rig.poses(100);
+    assert_eq!(rig.session.counts().starts, 2);
+}
+
+#[test]
+fn another_device_than_was_configured_is_named() {
+    let clock = HostClock::start();
+    let pty = plugged(EmulatorConfig::of(Family::Patriot), FaultsConfig::default(), None, clock);
+    let config = Config { port: pty.path().to_owned(), family: Family::Fastrak, ..Config::default() };
+    let told = Rig::start(config, clock).trouble();
+    assert!(told.contains("says nothing") || told.contains("no record of a Fastrak"), "{told}");
+}

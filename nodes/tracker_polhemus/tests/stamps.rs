@@ -1,0 +1,147 @@
+//! Stamps, sigmas and quality, against a tracker that is played in no time at all.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
+use nalgebra::{UnitQuaternion, Vector3};
+use serial_line::{Faults, FaultsConfig};
+use tracker_polhemus::emulator::{EmulatorConfig, PolhemusEmulator, World};
+use tracker_polhemus::protocol::commands::{settings, stream};
+use tracker_polhemus::protocol::decoder::Decoder;
+use tracker_polhemus::protocol::records::{Family, Layout};
+use tracker_polhemus::{Config, PolhemusTracker, StationPose};
+use wire::Quality;
+
+const TICK_NANOS: i64 = 100_000;
+
+fn played(
+    config: &Config,
+    emulator: EmulatorConfig,
+    faults: FaultsConfig,
+    seconds: i64,
+    world: impl Fn(i64) -> Vector3<f64> + Send + 'static,
+) -> Vec<StationPose> {
+    let world: World = Box::new(move |_, nanos| (world(nanos), UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3)));
+    let mut device = PolhemusEmulator::new(emulator, world);
+    for step in settings(config).iter().chain(&stream(config.family)) {
+        device.hear(&step.send, 0);
+    }
+    let (mut decoder, mut faults) = (Decoder::new(Layout::of(config.family)), Faults::new(faults));
+    let mut tracker = PolhemusTracker::new(config.clone()).unwrap();
+    let mut poses = Vec::new();
+    for tick in 1..seconds * 1_000_000_000 / TICK_NANOS {
+        while let Some((left_nanos, bytes)) = device.speak(tick * TICK_NANOS) {
+            let delivery = faults.deliver(left_nanos, &bytes);
+            for &byte in &delivery.bytes {
+                if let Some(record) = decoder.push(byte) {
+                    poses.extend(tracker.process(&record, delivery.due_nanos, decoder.take_missed()));
+                }
+            }
+        }
+    }
+    poses
+}
+
+fn config(family: Family, stations: &[u8]) -> Config {
+    Config { family, stations: stations.to_vec(), ..Config::default() }
+}
+
+fn metres(pose: &StationPose) -> Vector3<f64> {
+    Vector3::from(pose.pose.world_from_body.translation_m)
+}
+
+/// Along x at half a metre a second, to and fro: the position tells the time.
+fn pendulum(nanos: i64) -> Vector3<f64> {
+    let t = nanos as f64 * 1e-9 * 0.5;
+    Vector3::new(0.2 + 0.4 * ((t / 0.4).rem_euclid(2.0) - 1.0).abs(), 0.05, -0.1)
+}
+
+#[test]
+fn stamps_are_true_to_half_a_millisecond_at_ten_milliseconds_of_jitter() {
+    for (family, clock_rate) in
+        [(Family::Fastrak, 1.0), (Family::Liberty, 1.0), (Family::Liberty, 1.00008), (Family::Patriot, 0.99995)]
+    {
+        for stations in [&[1u8][..], &[1, 2]] {
+            let config = config(family, stations);
+            let faults = FaultsConfig { seed: 7, jitter_nanos: 10_000_000, ..FaultsConfig::default() };
+            let rate_hz = config.sheet().rate_hz;
+            let emulator =
+                EmulatorConfig { clock_rate, rate_hz, stations: stations.len() as u8, ..EmulatorConfig::of(family) };
+            let poses = played(&config, emulator, faults, 20, pendulum);
+            for sensor in 0..stations.len() {
+                let settled: Vec<f64> = poses[600..]
+                    .iter()
+                    .filter(|pose| pose.sensor == sensor && (0.21..0.59).contains(&metres(pose).x))
+                    .map(|pose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).x.abs() / 0.5 * 1e3)
+                    .collect();
+                let rms = (settled.iter().map(|e| e * e).sum::<f64>() / settled.len() as f64).sqrt();
+                println!(
+                    "{family:?}, clock {clock_rate}, station {} of {}: {rms:.3} ms rms",
+                    sensor + 1,
+                    stations.len()
+                );
+                assert!(rms < 0.5, "{family:?}, clock {clock_rate}, {} stations: {rms} ms rms", stations.len());
+            }
+            assert!(poses[600..].iter().all(|pose| pose.pose.quality == Quality::Good));
+        }
+    }
+}
+
+#[test]
+fn sigma_and_quality_say_what_distance_distortion_and_the_device_do() {
+    let at = |x: f64, change: fn(&mut EmulatorConfig)| {
+        let mut emulator = EmulatorConfig::of(Family::Liberty);
+        change(&mut emulator);
+        let config = config(Family::Liberty, &[1]);
+        played(&config, emulator, FaultsConfig::default(), 2, move |_| Vector3::new(x, 0.0, 0.0)).pop().unwrap().pose
+    };
+    let near = at(0.5, |_| {});
+    assert_eq!((near.quality, near.reason.as_str()), (Quality::Good, ""));
+    assert!((near.position_sigma_m[0] - 0.76e-3).abs() < 1e-9);
+    let far = at(1.2, |_| {});
+    assert!(far.quality == Quality::Degraded && far.reason.contains("1.20 m"));
+    assert!((far.position_sigma_m[0] / 0.76e-3 - (1.2f64 / 0.9).powi(4)).abs() < 1e-3);
+    let bent = at(0.5, |emulator| emulator.distortion = -300);
+    assert!(bent.quality == Quality::Degraded && bent.reason.contains("level 300"));
+    assert!((bent.rotation_sigma_rad[0] - 3.0 * 0.15f64.to_radians()).abs() < 1e-9);
+    let ill = at(0.5, |emulator| emulator.error = b'u');
+    assert!(ill.quality == Quality::Degraded && ill.reason.contains("reports `u`"));
+}
+
+#[test]
+fn lost_bytes_cost_the_records_they_are_in_and_no_stamp() {
+    for family in [Family::Fastrak, Family::Liberty] {
+        let faults = FaultsConfig {
+            seed: 8,
+            jitter_nanos: 5_000_000,
+            lost_ppm: 1000,
+            garbage_ppm: 5000,
+            ..FaultsConfig::default()
+        };
+        let poses = played(&config(family, &[1]), EmulatorConfig::of(family), faults, 20, pendulum);
+        let errors: Vec<f64> = poses[300..]
+            .iter()
+            .filter(|pose| pose.pose.quality == Quality::Good)
+            .map(|pose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).x.abs() / 0.5 * 1e3)
+            .collect();
+        let wrong = errors.iter().filter(|ms| **ms > 2.0).count();
+        assert!(errors.len() > 2000 && wrong * 100 < errors.len(), "{family:?}: {wrong} of {}", errors.len());
+    }
+}
+
+#[test]
+fn settings_that_cannot_be_are_refused_with_their_name() {
+    let base = || config(Family::Patriot, &[1]);
+    for (config, key) in [
+        (Config { baud: 14_401, ..base() }, "baud"),
+        (Config { stations: vec![], ..base() }, "stations"),
+        (Config { stations: vec![3], ..base() }, "stations"),
+        (Config { hemisphere: [f64::NAN, 0.0, 0.0], ..base() }, "hemisphere"),
+        (Config { most_distortion: 0, ..base() }, "most_distortion"),
+        (Config { latency_ms: Some(f64::INFINITY), ..base() }, "latency_ms"),
+        (Config { port: "".into(), ..base() }, "port"),
+    ] {
+        assert_eq!(PolhemusTracker::new(config).unwrap_err().key, key);
+    }
+    assert!(serde_json::from_str::<Config>(r#"{"family": "fastrak", "stations": [1, 2]}"#).is_ok());
+    assert!(serde_json::from_str::<Config>(r#"{"station": 1}"#).is_err());
+}
