@@ -1,0 +1,115 @@
+//! The full schedule, and all that guards it.
+
+use crate::evidence::{Evidence, Notice, Observed, Residual};
+use crate::gather::Gathered;
+use crate::guard::strokes;
+use crate::judge::judge;
+use crate::notices::{holds_little, missing_stroke, notice_moved, notice_solution};
+use crate::outcome::outcome;
+use crate::refinement::Refinement;
+use crate::scene::{Placed, Problem};
+use crate::schedule::{STAGES, judging, wide};
+use crate::solver::{self, Noise, Solution};
+use crate::step::look;
+use crate::testimony::{globals, refused, tracker};
+use crate::tracker::Smoothed;
+use crate::unknowns::Free;
+use crate::{Config, RefineError};
+use geometry::Smoothing;
+use nalgebra::Isometry3;
+
+/// Stripes must cross on this share of the surface before the hand-eye transform is freed.
+const CROSSING: f64 = 0.25;
+/// Less of the memberships seen by other strokes is nothing.
+const SEEN_TWICE: f64 = 0.05;
+/// The hand-eye correction may leave what is believed by so many standard deviations.
+const RAN_AWAY: f64 = 4.0;
+
+/// Refines what was gathered.
+pub(crate) fn finish(
+    config: &Config,
+    gathered: &Gathered,
+    body_from_camera: Isometry3<f64>,
+) -> Result<Refinement, RefineError> {
+    let smoothing = Smoothing { most_gap_ms: config.most_gap_ms, ..Smoothing::default() };
+    let smoothed = Smoothed::new(gathered, &smoothing)?;
+    let frames = solver::place(gathered, &smoothed);
+    if frames.is_empty() {
+        return Err(RefineError::NoFrames { frames: gathered.frames.len() });
+    }
+    let noise = Noise { inflation: 1.0, bias_knot_s: config.bias_knot_ms * 1e-3 };
+    let still = solver::problem(config, &noise, gathered, &smoothed, &frames, body_from_camera);
+    let zeros = vec![0.0; still.unknowns.len()];
+    let poses = still.poses(&zeros);
+    let before = judge(&still, &poses, &judging(config.seed));
+    let wide_before = look(&still, &poses, &wide(config.seed));
+    let strokes = strokes::look(&still, &poses, &wide_before.patches);
+    let mut notices = Vec::new();
+    let free = Free { fine: true, bias: true, field: true, clock: true, hand_eye: strokes.crossing >= CROSSING };
+    if !free.hand_eye {
+        notices.push(missing_stroke(&strokes));
+    }
+    let (problem, solution) = solve(config, free, gathered, &smoothed, &frames, body_from_camera, &mut notices);
+    let poses = problem.poses(&solution.x);
+    let after = judge(&problem, &poses, &judging(config.seed));
+    notice_solution(&solution, &mut notices);
+    let wide_after = look(&problem, &poses, &wide(config.seed));
+    notice_moved(&problem, &wide_after.patches, &mut notices);
+    let held = strokes::hold(&wide_after.patches);
+    if held.directions < 6 {
+        notices.push(holds_little(held));
+    }
+    let better = after.sigma_m <= before.sigma_m;
+    if after.seen_twice < SEEN_TWICE {
+        notices.insert(0, Notice::NothingSeenTwice);
+    } else if !better {
+        notices.insert(0, Notice::KeptSmoothed);
+    }
+    let keep = better && after.seen_twice >= SEEN_TWICE;
+    let (problem, x, judged, noise) =
+        if keep { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
+    let prior = solver::prior(config, &noise, problem);
+    let out = outcome(config, problem, &prior, judged, x);
+    let (clock, hand_eye) = globals(problem, &prior, &wide_after, free, x);
+    let evidence = Evidence {
+        clock,
+        hand_eye,
+        residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
+        tracker: tracker(&smoothed, solution.excess, noise),
+        observed: Observed {
+            crossing: strokes.crossing,
+            stripes_along: strokes.along.into(),
+            held_directions: held.directions,
+        },
+        notices,
+        frames_kept: out.frames.len(),
+        dropped: out.dropped,
+        frames_without_pose: gathered.frames.len() - frames.len(),
+        refused: refused(gathered),
+        frames: out.kept,
+    };
+    Ok(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })
+}
+
+/// The schedule; once more with the hand-eye transform held when it ran away.
+fn solve<'a>(
+    config: &Config,
+    free: Free,
+    gathered: &'a Gathered,
+    smoothed: &'a Smoothed,
+    frames: &'a [Placed],
+    body_from_camera: Isometry3<f64>,
+    notices: &mut Vec<Notice>,
+) -> (Problem<'a>, Solution) {
+    let (problem, solution) = solver::run(config, free, gathered, smoothed, frames, body_from_camera);
+    let eta = &solution.x[problem.unknowns.hand_eye()];
+    let beliefs = [config.hand_eye_mm * 1e-3, config.hand_eye_deg.to_radians()];
+    if (0..6).all(|i| eta[i].abs() <= RAN_AWAY * beliefs[i / 3]) {
+        return (problem, solution);
+    }
+    notices.push(Notice::HandEyeRanAway {
+        shift_mm: [0, 1, 2].map(|i| eta[i] * 1e3),
+        turn_deg: [3, 4, 5].map(|i| eta[i].to_degrees()),
+    });
+    solver::run(config, Free { hand_eye: false, ..free }, gathered, smoothed, frames, body_from_camera)
+}

@@ -1,0 +1,129 @@
+//! One global step on everything so far, again and again while the scan goes on.
+//!
+//! All frames stay free (a window of free frames on a frozen map drifts along a stroke and bakes its error in). What was
+//! found by the tick before is where the next begins; new time begins at the smoothed tracker. Points and surfels are
+//! bounded, so that a tick's time hardly grows with the scan.
+
+use crate::evidence::{Evidence, Notice, Observed, Residual};
+use crate::gather::Gathered;
+use crate::guard::strokes;
+use crate::judge::judge;
+use crate::outcome::outcome;
+use crate::refinement::Refinement;
+use crate::schedule::{LIVE, judging_live};
+use crate::solver::{self, Noise};
+use crate::spline::Knots;
+use crate::step::{look, step};
+use crate::testimony::{clock, hand_eye_held, refused, tracker};
+use crate::tracker::Smoothed;
+use crate::unknowns::{Free, GLOBALS, Unknowns};
+use crate::{Config, random::word};
+use geometry::Smoothing;
+use nalgebra::{Isometry3, Vector3};
+
+/// What goes on from tick to tick.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Live {
+    ticks: u64,
+    x: Vec<f64>,
+    unknowns: Option<Unknowns>,
+    /// Of each level.
+    scale_m: [Option<f64>; LIVE.len()],
+    /// The middle of the first tick: the field's polynomial stays centred there.
+    origin: Option<Vector3<f64>>,
+}
+
+/// Before so much time, strokes have hardly met.
+const FIRST_S: f64 = 2.0;
+/// Before this the field and the clock are not told from the slow correction.
+const GLOBALS_S: f64 = 10.0;
+/// In a live scan the readings are believed less, because the kind of their noise is not known yet.
+const INFLATION: f64 = 3.0;
+
+/// One tick. `None` while there is too little to refine.
+pub(crate) fn tick(
+    config: &Config,
+    gathered: &Gathered,
+    body_from_camera: Isometry3<f64>,
+    live: &mut Live,
+) -> Option<Refinement> {
+    let smoothing = Smoothing { most_gap_ms: config.most_gap_ms, ..Smoothing::default() };
+    let smoothed = Smoothed::new(gathered, &smoothing).ok()?;
+    let frames = solver::place(gathered, &smoothed);
+    if frames.last()?.t_s - frames.first()?.t_s < FIRST_S {
+        return None;
+    }
+    let noise = Noise { inflation: INFLATION, bias_knot_s: config.bias_knot_ms * 1e-3 };
+    let mut problem = solver::problem(config, &noise, gathered, &smoothed, &frames, body_from_camera);
+    problem.origin = *live.origin.get_or_insert(problem.origin);
+    let mut x = live.go_on(&problem.unknowns);
+    let prior = solver::prior(config, &noise, &problem);
+    let late = frames.last()?.t_s > GLOBALS_S;
+    let free = Free { fine: true, bias: true, field: late, clock: late, hand_eye: false };
+    let mut taken_back = false;
+    for (level, stage) in LIVE.iter().enumerate() {
+        let seed = word(config.seed, live.ticks * LIVE.len() as u64 + level as u64);
+        let scale_m = live.scale_m[level].unwrap_or(f64::INFINITY);
+        let before = x.clone();
+        match step(&problem, &prior, &stage.plan(free, scale_m, seed), &mut x) {
+            Some(seen) => live.scale_m[level] = Some(2.0 * seen.sigma_m),
+            None => (x, taken_back) = (before, true),
+        }
+    }
+    live.ticks += 1;
+    let plan = judging_live(config.seed);
+    let zeros = vec![0.0; x.len()];
+    let before = judge(&problem, &problem.poses(&zeros), &plan);
+    let after = judge(&problem, &problem.poses(&x), &plan);
+    let strokes = strokes::look(&problem, &problem.poses(&x), &look(&problem, &problem.poses(&x), &plan).patches);
+    let mut notices = Vec::new();
+    if taken_back {
+        notices.push(Notice::StepTakenBack);
+    }
+    let better = after.sigma_m <= before.sigma_m;
+    if !better {
+        notices.insert(0, Notice::KeptSmoothed);
+    }
+    let (used, judged) = if better { (&x, &after) } else { (&zeros, &before) };
+    let out = outcome(config, &problem, &prior, judged, used);
+    let evidence = Evidence {
+        residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
+        tracker: tracker(&smoothed, None, noise),
+        clock: clock(&problem, used, f64::NAN),
+        hand_eye: hand_eye_held(config),
+        observed: Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: 6 },
+        notices,
+        frames_kept: out.frames.len(),
+        dropped: out.dropped,
+        frames_without_pose: gathered.frames.len() - frames.len(),
+        refused: refused(gathered),
+        frames: out.kept,
+    };
+    live.unknowns = Some(problem.unknowns);
+    // Steps that made things worse are forgotten, or the next would begin there.
+    live.x = if better { x } else { zeros };
+    Some(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })
+}
+
+impl Live {
+    /// The unknowns of the tick before, laid out for more time. New knots of the fast correction are 0; the slow one
+    /// goes on as it was.
+    fn go_on(&self, unknowns: &Unknowns) -> Vec<f64> {
+        let mut x = vec![0.0; unknowns.len()];
+        let Some(before) = &self.unknowns else { return x };
+        let same = |a: &Knots, b: &Knots| a.start_s == b.start_s && a.step_s == b.step_s && a.count <= b.count;
+        if !same(&before.fine, &unknowns.fine) || !same(&before.coarse, &unknowns.coarse) {
+            return x;
+        }
+        x[..before.fine().len()].copy_from_slice(&self.x[before.fine()]);
+        let bias = &self.x[before.bias()];
+        let start = unknowns.bias().start;
+        x[start..start + bias.len()].copy_from_slice(bias);
+        let last = &bias[bias.len() - 6..];
+        x[start + bias.len()..unknowns.bias().end].chunks_exact_mut(6).for_each(|knot| knot.copy_from_slice(last));
+        let globals = unknowns.globals();
+        x[globals.clone()].copy_from_slice(&self.x[before.globals()]);
+        debug_assert_eq!(globals.len(), GLOBALS);
+        x
+    }
+}

@@ -1,0 +1,116 @@
+//! Preconditioner: each block of unknowns solved by itself, with the diagonal blocks of the data.
+
+use crate::banded::{Banded, Factor};
+use crate::prior::{Prior, is_free};
+use crate::schur::FrameData;
+use crate::unknowns::{Free, GLOBALS, Row, Unknowns};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
+
+/// The three factored blocks; those that are not free are `None`.
+pub(crate) struct Preconditioner {
+    fine: Option<Factor>,
+    bias: Option<Factor>,
+    globals: Option<Cholesky<f64, Dyn>>,
+}
+
+/// Levenberg and Marquardt's damping, here alone.
+const DAMPING: f64 = 1e-3;
+/// Four knots of six unknowns act on a frame.
+const HALF_BANDWIDTH: usize = 23;
+
+impl Preconditioner {
+    pub fn new(unknowns: &Unknowns, free: &Free, rows: &[&Row], data: &[FrameData], prior: &Prior) -> Self {
+        let spline = |fine: bool| {
+            let mut band = spline_block(unknowns, fine, rows, data, prior);
+            band.damp(DAMPING);
+            band.factor()
+        };
+        let (fine, (bias, globals)) = rayon::join(
+            || free.fine.then(|| spline(true)),
+            || (free.bias.then(|| spline(false)), globals(unknowns, free, rows, data, prior)),
+        );
+        Self { fine, bias, globals }
+    }
+
+    /// The residual, made into a step.
+    pub fn apply(&self, unknowns: &Unknowns, residual: &[f64]) -> Vec<f64> {
+        let mut out = residual.to_vec();
+        let (splines, globals) = out.split_at_mut(unknowns.globals().start);
+        let (fine, bias) = splines.split_at_mut(unknowns.bias().start);
+        if let Some(factor) = &self.fine {
+            factor.solve(fine);
+        }
+        if let Some(factor) = &self.bias {
+            factor.solve(bias);
+        }
+        if let Some(cholesky) = &self.globals {
+            let mut right = DVector::from_column_slice(globals);
+            cholesky.solve_mut(&mut right);
+            globals.copy_from_slice(right.as_slice());
+        }
+        out
+    }
+}
+
+/// Data and prior of one spline, all else held fast.
+pub(crate) fn spline_block(
+    unknowns: &Unknowns,
+    fine: bool,
+    rows: &[&Row],
+    data: &[FrameData],
+    prior: &Prior,
+) -> Banded {
+    let count = if fine { unknowns.fine.count } else { unknowns.coarse.count };
+    let mut band = Banded::zeros(6 * count, HALF_BANDWIDTH);
+    prior.add_to_band(fine, &mut band);
+    for (row, data) in rows.iter().zip(data).filter(|(_, data)| data.members > 0) {
+        let (first, weights) = row.knots(fine);
+        for a in 0..4 {
+            for b in 0..=a {
+                let weight = weights[a] * weights[b];
+                for i in 0..6 {
+                    let columns = if a == b { i + 1 } else { 6 };
+                    for j in 0..columns {
+                        band.add(6 * (first + a) + i, 6 * (first + b) + j, weight * data.hessian[(i, j)]);
+                    }
+                }
+            }
+        }
+    }
+    band
+}
+
+fn globals(
+    unknowns: &Unknowns,
+    free: &Free,
+    rows: &[&Row],
+    data: &[FrameData],
+    prior: &Prior,
+) -> Option<Cholesky<f64, Dyn>> {
+    if !(free.field || free.hand_eye || free.clock) {
+        return None;
+    }
+    // Sums over fixed runs of frames, in order: the same bytes on any number of threads.
+    const RUN: usize = 256;
+    let frames: Vec<_> = rows.iter().zip(data).collect();
+    let parts: Vec<DMatrix<f64>> = frames
+        .par_chunks(RUN)
+        .map(|frames| {
+            let mut sum = DMatrix::zeros(GLOBALS, GLOBALS);
+            for (row, data) in frames.iter().filter(|(_, data)| data.members > 0) {
+                let columns = unknowns.global_columns(row, free);
+                let columns = DMatrix::from_fn(6, GLOBALS, |i, j| columns[i][j]);
+                let weighted = DMatrix::from_column_slice(6, 6, data.hessian.as_slice()) * &columns;
+                sum.gemm_tr(1.0, &columns, &weighted, 1.0);
+            }
+            sum
+        })
+        .collect();
+    let mut matrix = parts.iter().fold(DMatrix::zeros(GLOBALS, GLOBALS), |sum, part| sum + part);
+    for i in 0..GLOBALS {
+        let precision = if is_free(free, i) { prior.globals()[i] } else { 1.0 };
+        matrix[(i, i)] = (matrix[(i, i)] + precision) * (1.0 + DAMPING);
+    }
+    Cholesky::new(matrix)
+}

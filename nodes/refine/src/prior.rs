@@ -1,0 +1,153 @@
+//! What is believed before the surface is looked at: quadratic, all of mean zero.
+//!
+//! The smoothed tracker minimises (readings + smoothness), so it stands for all readings: the correction's own penalty is
+//! the same quadratic form around it, with a weaker smoothness because the hand's tremor must come back.
+
+use crate::banded::Banded;
+use crate::spline::Knots;
+use crate::unknowns::{Free, GLOBALS, Unknowns};
+
+/// Standard deviations of the unknowns, in metres, radians and seconds; pairs are (position, rotation).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Beliefs {
+    /// The tracker's white noise, along one axis.
+    pub white: [f64; 2],
+    /// How many times its variance the readings have where it counts.
+    pub inflation: [f64; 2],
+    /// Weight of the squared third differences of the fine knots.
+    pub smoothness: [f64; 2],
+    pub bias: [f64; 2],
+    pub field: [f64; 2],
+    pub hand_eye: [f64; 2],
+    pub clock_s: f64,
+}
+
+/// Where no reading holds the fast correction, it is still no larger than this.
+const FAR: [f64; 2] = [0.03, 0.3];
+/// Second differences of the slow correction count so much more than its size.
+const BIAS_BEND: f64 = 4.0;
+
+/// The precision matrix P of the prior.
+#[derive(Debug, Clone)]
+pub(crate) struct Prior {
+    /// One axis of position, one of rotation.
+    fine: [Banded; 2],
+    /// The readings' part of it, at the variance that the smoother found.
+    readings: [Banded; 2],
+    bias: [Banded; 2],
+    globals: [f64; GLOBALS],
+}
+
+impl Prior {
+    /// `reading_times_s` are on the splines' time.
+    pub fn new(unknowns: &Unknowns, reading_times_s: &[f64], beliefs: &Beliefs) -> Self {
+        let gram = gram(&unknowns.fine, reading_times_s);
+        let readings = [0, 1].map(|kind| gram.clone().scaled(beliefs.white[kind].powi(-2)));
+        let fine = [0, 1].map(|kind| {
+            let mut band = readings[kind].clone().scaled(1.0 / beliefs.inflation[kind]);
+            (0..unknowns.fine.count).for_each(|row| band.add(row, row, FAR[kind].powi(-2)));
+            add_differences(&mut band, &[-1.0, 3.0, -3.0, 1.0], beliefs.smoothness[kind]);
+            band
+        });
+        let bias = [0, 1].map(|kind| {
+            let mut band = Banded::zeros(unknowns.coarse.count, 2);
+            let weight = beliefs.bias[kind].powi(-2);
+            (0..unknowns.coarse.count).for_each(|row| band.add(row, row, weight));
+            add_differences(&mut band, &[1.0, -2.0, 1.0], BIAS_BEND * weight);
+            band
+        });
+        let mut globals = [beliefs.clock_s.powi(-2); GLOBALS];
+        for (i, precision) in globals[..GLOBALS - 1].iter_mut().enumerate() {
+            let sigmas = if i < GLOBALS - 7 { beliefs.field } else { beliefs.hand_eye };
+            *precision = sigmas[usize::from(i % 6 >= 3)].powi(-2);
+        }
+        Self { fine, readings, bias, globals }
+    }
+
+    /// Adds P v to `out`, for the blocks that are free.
+    pub fn add_product(&self, unknowns: &Unknowns, free: &Free, v: &[f64], out: &mut [f64]) {
+        let blocks = [(free.fine, &self.fine, unknowns.fine()), (free.bias, &self.bias, unknowns.bias())];
+        for (_, bands, range) in blocks.into_iter().filter(|(is_free, ..)| *is_free) {
+            for axis in 0..6 {
+                multiply(&bands[axis / 3], &v[range.clone()], &mut out[range.clone()], axis);
+            }
+        }
+        let start = unknowns.globals().start;
+        for (i, precision) in self.globals.iter().enumerate().filter(|(i, _)| is_free(free, *i)) {
+            out[start + i] += precision * v[start + i];
+        }
+    }
+
+    /// Adds P to the block of a spline, as the preconditioner holds it.
+    pub fn add_to_band(&self, fine: bool, band: &mut Banded) {
+        let (bands, reach) = if fine { (&self.fine, 3) } else { (&self.bias, 2) };
+        for row in 0..bands[0].size {
+            for column in row.saturating_sub(reach)..=row {
+                for axis in 0..6 {
+                    band.add(6 * row + axis, 6 * column + axis, bands[axis / 3].at(row, column));
+                }
+            }
+        }
+    }
+
+    /// One axis of the fast correction: 0 position, 1 rotation.
+    pub fn fine(&self, kind: usize) -> &Banded {
+        &self.fine[kind]
+    }
+
+    /// The readings' part of it, not inflated.
+    pub fn readings(&self, kind: usize) -> &Banded {
+        &self.readings[kind]
+    }
+
+    /// The precisions of field, hand-eye and clock.
+    pub fn globals(&self) -> &[f64; GLOBALS] {
+        &self.globals
+    }
+}
+
+/// Whether a global unknown may move.
+pub(crate) fn is_free(free: &Free, global: usize) -> bool {
+    match global {
+        i if i < GLOBALS - 7 => free.field,
+        i if i < GLOBALS - 1 => free.hand_eye,
+        _ => free.clock,
+    }
+}
+
+/// Sum over the moments of B(t) B(t)^T.
+fn gram(knots: &Knots, times_s: &[f64]) -> Banded {
+    let mut band = Banded::zeros(knots.count, 3);
+    for t in times_s {
+        let (first, weights) = knots.weights(*t);
+        for a in 0..4 {
+            for b in 0..=a {
+                band.add(first + a, first + b, weights[a] * weights[b]);
+            }
+        }
+    }
+    band
+}
+
+fn add_differences(band: &mut Banded, stencil: &[f64], weight: f64) {
+    for first in 0..(band.size + 1).saturating_sub(stencil.len()) {
+        for a in 0..stencil.len() {
+            for b in 0..=a {
+                band.add(first + a, first + b, weight * stencil[a] * stencil[b]);
+            }
+        }
+    }
+}
+
+/// out += band v, along one of the six axes that lie interleaved.
+fn multiply(band: &Banded, v: &[f64], out: &mut [f64], axis: usize) {
+    let reach = band.half_bandwidth();
+    for row in 0..band.size {
+        for column in row.saturating_sub(reach)..row {
+            let value = band.at(row, column);
+            out[6 * row + axis] += value * v[6 * column + axis];
+            out[6 * column + axis] += value * v[6 * row + axis];
+        }
+        out[6 * row + axis] += band.at(row, row) * v[6 * row + axis];
+    }
+}

@@ -1,0 +1,147 @@
+//! The data's part of the normal equations with the surfels' own parameters eliminated, never formed as a matrix.
+//!
+//! A surfel with members i has the cost sum w_i (e_i + J_i d - phi_i c)^2. Minimised over its parameters c it leaves
+//! d^T J~^T (I - Psi Psi^T) J~ d with J~ = sqrt(w) J and Psi = sqrt(w) phi L^-T, where L L^T = sum w phi phi^T (+ ridge).
+//! Psi^T Psi <= I, so what is left is symmetric and positive semi-definite whatever single precision does to Psi.
+
+use crate::surfel::{Member, Patch};
+use nalgebra::{Matrix6, Vector6};
+use rayon::prelude::*;
+
+/// What each frame's data say of its correction by itself.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameData {
+    /// J^T W (I - leverage) J: the block's diagonal of the eliminated system.
+    pub hessian: Matrix6<f64>,
+    /// -J^T W e, eliminated.
+    pub force: Vector6<f64>,
+    /// How many members its points are.
+    pub members: u32,
+}
+
+/// v minus its part that the surfel's parameters take up.
+fn eliminate(members: &[Member], values: &mut [f32]) {
+    let mut taken = [0f32; 8];
+    for (member, value) in members.iter().zip(values.iter()) {
+        for k in 0..8 {
+            taken[k] += member.terms[k] * value;
+        }
+    }
+    for (member, value) in members.iter().zip(values.iter_mut()) {
+        *value -= dot(&member.terms, &taken);
+    }
+}
+
+fn dot(a: &[f32; 8], b: &[f32; 8]) -> f32 {
+    let mut sums = [0f32; 4];
+    for k in 0..4 {
+        sums[k] = a[k] * b[k] + a[k + 4] * b[k + 4];
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
+}
+
+impl Patch {
+    /// The members of each surfel.
+    pub fn surfels(&self) -> impl Iterator<Item = &[Member]> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.members[start as usize..end as usize])
+    }
+}
+
+/// Room for the product: one sum for each patch.
+pub(crate) struct Room {
+    sums: Vec<Vec<[f64; 6]>>,
+    moves: Vec<[f32; 8]>,
+}
+
+impl Room {
+    pub fn new(patches: &[Patch], frames: usize) -> Self {
+        Self { sums: vec![vec![[0.0; 6]; frames]; patches.len()], moves: vec![[0.0; 8]; frames] }
+    }
+}
+
+/// For each frame the force that the data answer to these corrections of all frames: J~^T (I - Psi Psi^T) J~ d, times
+/// `weight`.
+pub(crate) fn product(
+    patches: &[Patch],
+    weight: f64,
+    corrections: &[Vector6<f64>],
+    room: &mut Room,
+) -> Vec<Vector6<f64>> {
+    for (wide, correction) in room.moves.iter_mut().zip(corrections) {
+        (0..6).for_each(|i| wide[i] = correction[i] as f32);
+    }
+    let moves = &room.moves;
+    patches.par_iter().zip(&mut room.sums).for_each(|(patch, sums)| {
+        sums.fill([0.0; 6]);
+        let mut values = Vec::new();
+        for members in patch.surfels() {
+            values.clear();
+            values.extend(members.iter().map(|m| dot(&m.jacobian, &moves[m.frame as usize])));
+            eliminate(members, &mut values);
+            for (member, value) in members.iter().zip(&values) {
+                let sum = &mut sums[member.frame as usize];
+                (0..6).for_each(|i| sum[i] += f64::from(member.jacobian[i] * value));
+            }
+        }
+    });
+    let total = |k: usize| {
+        let mut total = Vector6::zeros();
+        room.sums.iter().for_each(|sums| (0..6).for_each(|i| total[i] += sums[k][i]));
+        total * weight
+    };
+    (0..corrections.len()).into_par_iter().with_min_len(256).map(total).collect()
+}
+
+/// Right side and diagonal blocks, times `weight`.
+pub(crate) fn frame_data(patches: &[Patch], weight: f64, frames: usize) -> Vec<FrameData> {
+    let none = FrameData { hessian: Matrix6::zeros(), force: Vector6::zeros(), members: 0 };
+    let parts: Vec<Vec<FrameData>> = patches
+        .par_iter()
+        .map(|patch| {
+            let mut data = vec![none.clone(); frames];
+            let mut values = Vec::new();
+            for members in patch.surfels() {
+                values.clear();
+                values.extend(members.iter().map(|m| m.residual));
+                eliminate(members, &mut values);
+                for (member, value) in members.iter().zip(&values) {
+                    let own = &mut data[member.frame as usize];
+                    let left = (1.0 - dot(&member.terms, &member.terms)).max(0.0);
+                    own.members += 1;
+                    for i in 0..6 {
+                        own.force[i] -= f64::from(member.jacobian[i] * value);
+                        for j in 0..=i {
+                            own.hessian[(i, j)] += f64::from(left * member.jacobian[i] * member.jacobian[j]);
+                        }
+                    }
+                }
+            }
+            data
+        })
+        .collect();
+    let total = |k: usize| {
+        let mut sum = none.clone();
+        for part in &parts {
+            sum.hessian += part[k].hessian;
+            sum.force += part[k].force;
+            sum.members += part[k].members;
+        }
+        sum.hessian.fill_upper_triangle_with_lower_triangle();
+        FrameData { hessian: sum.hessian * weight, force: sum.force * weight, ..sum }
+    };
+    (0..frames).into_par_iter().with_min_len(256).map(total).collect()
+}
+
+/// The root mean square of a robust part of the residuals: 1.4826 times their median size, in metres.
+pub(crate) fn robust_sigma_m(patches: &[Patch]) -> f64 {
+    const SIGMA_PER_MEDIAN: f64 = 1.4826;
+    let mut sizes: Vec<f32> =
+        patches.iter().flat_map(|patch| &patch.members).map(|member| member.distance_m.abs()).collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
+    SIGMA_PER_MEDIAN * f64::from(*median)
+}

@@ -1,0 +1,192 @@
+//! The whole schedule on one scan.
+
+use crate::Config;
+use crate::gather::{Frame, Gathered};
+use crate::guard::coloured;
+use crate::precondition::spline_block;
+use crate::prior::{Beliefs, Prior};
+use crate::random::word;
+use crate::scene::{Placed, Problem};
+use crate::schedule::{STAGE_SEEDS, STAGES, Stage};
+use crate::spline::Knots;
+use crate::step::{Seen, step};
+use crate::tracker::Smoothed;
+use crate::unknowns::{Free, Row, Unknowns};
+use nalgebra::{Isometry3, Vector3};
+
+/// How the tracker's noise is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Noise {
+    /// The readings' variance where it counts, in units of what the smoother found.
+    pub inflation: f64,
+    pub bias_knot_s: f64,
+}
+
+/// The frames that have a pose, and the splines over them.
+pub(crate) fn place(gathered: &Gathered, smoothed: &Smoothed) -> Vec<Placed> {
+    let start = gathered.frames.first().map_or(0, Frame::stamp_nanos);
+    let placed = |(i, frame): (usize, &Frame)| {
+        smoothed.at(frame.stamp_nanos())?;
+        let t_s = (frame.stamp_nanos() - start) as f64 * 1e-9;
+        Some(Placed { frame: i, stamp_nanos: frame.stamp_nanos(), t_s })
+    };
+    gathered.frames.iter().enumerate().filter_map(placed).collect()
+}
+
+/// The unknowns and the fixed things around them.
+pub(crate) fn problem<'a>(
+    config: &Config,
+    noise: &Noise,
+    gathered: &'a Gathered,
+    smoothed: &'a Smoothed,
+    frames: &'a [Placed],
+    body_from_camera: Isometry3<f64>,
+) -> Problem<'a> {
+    let end_s = frames.last().map_or(0.0, |frame| frame.t_s);
+    let unknowns = Unknowns {
+        fine: Knots::over(0.0, end_s, config.knot_ms * 1e-3),
+        coarse: Knots::over(0.0, end_s, noise.bias_knot_s),
+    };
+    let places = frames.iter().filter_map(|frame| smoothed.at(frame.stamp_nanos));
+    let sum: Vector3<f64> = places.map(|pose| pose.translation.vector).sum();
+    let origin = sum / frames.len().max(1) as f64;
+    Problem { gathered, smoothed, body_from_camera, frames, unknowns, origin }
+}
+
+/// What is believed of the unknowns.
+pub(crate) fn prior(config: &Config, noise: &Noise, problem: &Problem) -> Prior {
+    let span = 0.0..=problem.frames.last().map_or(0.0, |frame| frame.t_s);
+    let times = problem.gathered.readings.iter().map(|r| (r.stamp_nanos - problem.start_nanos()) as f64 * 1e-9);
+    let times: Vec<f64> = times.filter(|t| span.contains(t)).collect();
+    let white = problem.smoothed.white().map(|sigma| sigma.max(LEAST_WHITE));
+    let stiffness = problem.smoothed.stiffness(config.knot_ms * 1e-3);
+    let deg = f64::to_radians;
+    let beliefs = Beliefs {
+        white,
+        inflation: [noise.inflation; 2],
+        smoothness: [0, 1].map(|k| config.smoothness * stiffness[k].max(LEAST_STIFFNESS) / white[k].powi(2)),
+        bias: [config.bias_position_mm * 1e-3, deg(config.bias_rotation_deg)],
+        field: [config.field_position_mm * 1e-3, deg(config.field_rotation_deg)],
+        hand_eye: [config.hand_eye_mm * 1e-3, deg(config.hand_eye_deg)],
+        clock_s: config.clock_ms * 1e-3,
+    };
+    Prior::new(&problem.unknowns, &times, &beliefs)
+}
+
+/// A perfect tracker would make the prior infinitely stiff.
+const LEAST_WHITE: f64 = 1e-7;
+const LEAST_STIFFNESS: f64 = 1e-3;
+
+/// What came of the steps of one or more stages.
+pub(crate) struct Progress {
+    /// What the last step saw before it moved.
+    pub seen: Seen,
+    /// A step was not finite, or made things worse, and was taken back.
+    pub taken_back: bool,
+}
+
+/// A step that makes the residuals so many times as large as they were is taken back.
+const WORSE: f64 = 1.5;
+/// A stage ends when a step gains less than this share ...
+const GAIN: f64 = 0.93;
+/// ... but not before this step, nor later than that one.
+const FEWEST_STEPS: usize = 2;
+const MOST_STEPS: usize = 8;
+
+/// The steps of one stage, from `x`. `scale_m` is the robust scale and goes on from stage to stage.
+pub(crate) fn run_stage(
+    config: &Config,
+    problem: &Problem,
+    prior: &Prior,
+    (number, stage): (usize, &Stage),
+    free: Free,
+    scale_m: &mut f64,
+    x: &mut Vec<f64>,
+) -> Option<Progress> {
+    let mut progress: Option<Progress> = None;
+    let mut before = x.clone();
+    for i in 0..MOST_STEPS {
+        let seed = word(config.seed, STAGE_SEEDS * number as u64 + i as u64);
+        let now = x.clone();
+        let Some(seen) = step(problem, prior, &stage.plan(free, *scale_m, seed), x) else {
+            *x = now;
+            return progress.map(|progress| Progress { taken_back: true, ..progress });
+        };
+        let last = progress.as_ref().map_or(f64::INFINITY, |progress| progress.seen.sigma_m);
+        if seen.sigma_m > WORSE * last {
+            *x = before;
+            return progress.map(|progress| Progress { taken_back: true, ..progress });
+        }
+        before = now;
+        *scale_m = 2.0 * seen.sigma_m;
+        let enough = seen.sigma_m > GAIN * last && i + 1 >= FEWEST_STEPS;
+        progress = Some(Progress { seen, taken_back: false });
+        if enough {
+            break;
+        }
+    }
+    progress
+}
+
+/// How many times the stated variance the readings seem to have after a stage: the larger of position and rotation.
+pub(crate) fn excess(problem: &Problem, prior: &Prior, seen: &Seen, x: &[f64]) -> Option<f64> {
+    let rows = problem.rows(x[problem.unknowns.clock()]);
+    let rows: Vec<&Row> = rows.iter().collect();
+    let posterior = spline_block(&problem.unknowns, true, &rows, &seen.frames, prior);
+    let found = coloured::inflation(&problem.unknowns, prior, posterior, x);
+    found.into_iter().flatten().reduce(f64::max)
+}
+
+/// A finished schedule.
+pub(crate) struct Solution {
+    pub x: Vec<f64>,
+    pub noise: Noise,
+    /// See [`coloured`]; `None` when too little is held.
+    pub excess: Option<f64>,
+    pub taken_back: bool,
+}
+
+/// Above this the noise is not white: 0.2 to 0.4 is what white noise and fields give, 0.9 and more what noise of 0.3 s
+/// gives (the data are counted several times, so it is not 1).
+const COLOURED: f64 = 0.6;
+/// What is believed then: variance and knots that bring back noise of a third of a second.
+const COLOURED_INFLATION: f64 = 30.0;
+const COLOURED_KNOT_S: f64 = 0.2;
+
+/// All stages from nothing. The tracker's noise is judged after the second; when it is coloured all begins again, and
+/// the prior believes the readings less.
+pub(crate) fn run<'a>(
+    config: &Config,
+    free: Free,
+    gathered: &'a Gathered,
+    smoothed: &'a Smoothed,
+    frames: &'a [Placed],
+    body_from_camera: Isometry3<f64>,
+) -> (Problem<'a>, Solution) {
+    let white = Noise { inflation: 1.0, bias_knot_s: config.bias_knot_ms * 1e-3 };
+    let coloured = Noise { inflation: COLOURED_INFLATION, bias_knot_s: white.bias_knot_s.min(COLOURED_KNOT_S) };
+    let mut noise = white;
+    let mut excess_found = None;
+    loop {
+        let problem = problem(config, &noise, gathered, smoothed, frames, body_from_camera);
+        let prior = prior(config, &noise, &problem);
+        let (mut x, mut scale_m, mut taken_back) = (vec![0.0; problem.unknowns.len()], f64::INFINITY, false);
+        let mut again = false;
+        for (number, stage) in STAGES.iter().enumerate() {
+            let progress = run_stage(config, &problem, &prior, (number, stage), free, &mut scale_m, &mut x);
+            let Some(progress) = progress else { continue };
+            taken_back |= progress.taken_back;
+            if number == 1 && noise == white {
+                excess_found = excess(&problem, &prior, &progress.seen, &x);
+                again = excess_found.is_some_and(|excess| excess > COLOURED);
+                if again {
+                    break;
+                }
+            }
+        }
+        if !again {
+            return (problem, Solution { x, noise, excess: excess_found, taken_back });
+        }
+        noise = coloured;
+    }
+}

@@ -1,0 +1,100 @@
+//! What the unknowns that all frames share came to, and how well they are known.
+
+use crate::evidence::{ClockEvidence, HandEyeEvidence, RefusedInput, TrackerEvidence};
+use crate::gather::Gathered;
+use crate::pcg;
+use crate::precondition::Preconditioner;
+use crate::prior::Prior;
+use crate::scene::Problem;
+use crate::schur::{Room, product};
+use crate::solver::Noise;
+use crate::step::Seen;
+use crate::tracker::Smoothed;
+use crate::unknowns::{Free, Row};
+use crate::Config;
+use nalgebra::Vector6;
+use rayon::prelude::*;
+
+const CG_STEPS: usize = 40;
+const TOLERANCE: f64 = 1e-3;
+
+/// The marginal standard deviations of hand-eye (six) and clock: the roots of the diagonal of H^-1, a column each.
+fn sigmas(problem: &Problem, prior: &Prior, seen: &Seen, free: &Free, x: &[f64]) -> [f64; 7] {
+    let unknowns = &problem.unknowns;
+    let poses = problem.poses(x);
+    let rows: Vec<&Row> = poses.iter().map(|pose| &pose.row).collect();
+    let preconditioner = Preconditioner::new(unknowns, free, &rows, &seen.frames, prior);
+    let sigma = |i: usize| {
+        let at = unknowns.hand_eye().start + i;
+        let mut unit = vec![0.0; x.len()];
+        unit[at] = 1.0;
+        let mut room = Room::new(&seen.patches, rows.len());
+        let apply = |v: &[f64]| {
+            let corrections: Vec<Vector6<f64>> = rows.iter().map(|row| unknowns.correction(row, v, true)).collect();
+            let forces = product(&seen.patches, seen.weight, &corrections, &mut room);
+            let mut out = vec![0.0; v.len()];
+            prior.add_product(unknowns, free, v, &mut out);
+            rows.iter().zip(&forces).for_each(|(row, force)| unknowns.spread(row, force, free, &mut out));
+            out
+        };
+        let column = pcg::solve(&unit, CG_STEPS, TOLERANCE, apply, |r| preconditioner.apply(unknowns, r));
+        column.map_or(f64::NAN, |column| column[at].max(0.0).sqrt())
+    };
+    let all: Vec<f64> = (0..7usize).into_par_iter().map(sigma).collect();
+    [0, 1, 2, 3, 4, 5, 6].map(|i| all[i])
+}
+
+/// Clock and hand-eye, with their sigma; where they were held fast that is what was believed.
+pub(crate) fn globals(
+    problem: &Problem,
+    prior: &Prior,
+    seen: &Seen,
+    free: Free,
+    x: &[f64],
+) -> (ClockEvidence, HandEyeEvidence) {
+    let sigma = sigmas(problem, prior, seen, &Free { hand_eye: true, clock: true, ..free }, x);
+    let eta = &x[problem.unknowns.hand_eye()];
+    let clock = clock(problem, x, sigma[6]);
+    let hand_eye = HandEyeEvidence {
+        freed: free.hand_eye,
+        shift_mm: [0, 1, 2].map(|i| eta[i] * 1e3),
+        turn_deg: [3, 4, 5].map(|i| eta[i].to_degrees()),
+        shift_sigma_mm: [0, 1, 2].map(|i| sigma[i] * 1e3),
+        turn_sigma_deg: [3, 4, 5].map(|i| sigma[i].to_degrees()),
+    };
+    (clock, hand_eye)
+}
+
+/// The clock's offset as it was found.
+pub(crate) fn clock(problem: &Problem, x: &[f64], sigma_s: f64) -> ClockEvidence {
+    let sigma_ms = Some(sigma_s * 1e3).filter(|sigma| sigma.is_finite());
+    ClockEvidence { tau_ms: x[problem.unknowns.clock()] * 1e3, sigma_ms }
+}
+
+/// The hand-eye transform where nothing was asked about it.
+pub(crate) fn hand_eye_held(config: &Config) -> HandEyeEvidence {
+    HandEyeEvidence {
+        freed: false,
+        shift_mm: [0.0; 3],
+        turn_deg: [0.0; 3],
+        shift_sigma_mm: [config.hand_eye_mm; 3],
+        turn_sigma_deg: [config.hand_eye_deg; 3],
+    }
+}
+
+/// What the tracker's readings are like.
+pub(crate) fn tracker(smoothed: &Smoothed, excess: Option<f64>, noise: Noise) -> TrackerEvidence {
+    let [position, rotation] = smoothed.white();
+    TrackerEvidence {
+        white_position_mm: position * 1e3,
+        white_rotation_deg: rotation.to_degrees(),
+        excess,
+        inflation: noise.inflation,
+    }
+}
+
+/// What was refused on the way in.
+pub(crate) fn refused(gathered: &Gathered) -> Vec<RefusedInput> {
+    let told = |refusal: wire::Refusal| RefusedInput { reason: refusal.reason, count: refusal.count };
+    gathered.refused().into_iter().map(told).collect()
+}

@@ -1,0 +1,63 @@
+//! The tracker's readings made smooth, and read at any moment.
+
+use crate::gather::Gathered;
+use geometry::{SmoothError, SmoothTrajectory, Smoothing, TimedPose};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3, Vector6};
+
+/// The smoothed tracker of a scan.
+#[derive(Debug, Clone)]
+pub(crate) struct Smoothed {
+    way: SmoothTrajectory,
+}
+
+impl Smoothed {
+    pub fn new(gathered: &Gathered, smoothing: &Smoothing) -> Result<Self, SmoothError> {
+        let readings = &gathered.readings;
+        let lagging = gathered.rotation_stamps.iter().zip(readings).any(|(stamp, r)| *stamp != r.stamp_nanos);
+        if !lagging {
+            return Ok(Self { way: SmoothTrajectory::fit(readings, smoothing)? });
+        }
+        let turned = gathered.rotation_stamps.iter().zip(readings);
+        let rotations: Vec<_> = turned.map(|(&stamp_nanos, r)| TimedPose { stamp_nanos, ..*r }).collect();
+        Ok(Self { way: SmoothTrajectory::fit_apart(readings, &rotations, smoothing)? })
+    }
+
+    /// world_from_body at a moment; `None` where the tracker was silent.
+    pub fn at(&self, stamp_nanos: i64) -> Option<Isometry3<f64>> {
+        self.way.at(stamp_nanos)
+    }
+
+    /// world_from_body at a moment plus tau, and its twist in the moving frame. Where there is no reading at the later
+    /// moment the pose goes on as at the earlier.
+    pub fn base(&self, stamp_nanos: i64, tau_s: f64) -> (Isometry3<f64>, Vector6<f64>) {
+        let later = stamp_nanos.saturating_add((tau_s * 1e9).round() as i64);
+        match (self.way.at(later), self.way.velocity(later)) {
+            (Some(pose), Some(twist)) => (pose, twist),
+            _ => {
+                let pose = self.way.at(stamp_nanos).unwrap_or_default();
+                let twist = self.way.velocity(stamp_nanos).unwrap_or_default();
+                let moved = twist * tau_s;
+                let turn = UnitQuaternion::new(moved.fixed_rows::<3>(3).into_owned());
+                let shift: Vector3<f64> = moved.fixed_rows::<3>(0).into();
+                (pose * Isometry3::from_parts(shift.into(), turn), twist)
+            }
+        }
+    }
+
+    /// What the white noise leaves at a moment: metres and radians, one axis.
+    pub fn sigma(&self, stamp_nanos: i64) -> (f64, f64) {
+        self.way.sigma(stamp_nanos).unwrap_or((f64::INFINITY, f64::INFINITY))
+    }
+
+    /// The white noise of a reading, one axis: metres and radians.
+    pub fn white(&self) -> [f64; 2] {
+        [self.way.position_sigma_m(), self.way.rotation_sigma_rad()].map(|axes| (axes.norm_squared() / 3.0).sqrt())
+    }
+
+    /// The penalty on third differences for knots of another spacing, position and rotation, in units of the readings'
+    /// precision.
+    pub fn stiffness(&self, step_s: f64) -> [f64; 2] {
+        let ratio = self.way.knot_nanos() as f64 * 1e-9 / step_s;
+        [self.way.lambda_position(), self.way.lambda_rotation()].map(|lambda| lambda * ratio.powi(5))
+    }
+}

@@ -1,0 +1,182 @@
+//! The vector of all unknowns: which correction of the tracker stands where in it.
+//!
+//! A correction of frame k is a twist (dt, dr)_k: position in metres along, rotation in radians about the axes of the
+//! smoothed body. It is a linear function of the unknowns,
+//!
+//!   (dt, dr)_k = sum B_a(t_k) xi_a + sum B'_a(t_k) b_a + diag(R^T, R^T) sum phi_m(p_k) a_m + eta
+//!
+//! with xi on fine knots (what the white noise left), b on coarse knots (slow errors), a the coefficients of a field of
+//! degree 2 in space, and eta the hand-eye correction; the clock offset tau moves the base pose itself.
+
+use crate::spline::Knots;
+use nalgebra::{Isometry3, Matrix3, Vector3, Vector6};
+use std::ops::Range;
+
+/// Monomials of degree 2 and less.
+pub(crate) const MONOMIALS: usize = 10;
+const FIELD: usize = 6 * MONOMIALS;
+/// Unknowns that all frames share: field, hand-eye and clock.
+pub(crate) const GLOBALS: usize = FIELD + 6 + 1;
+/// The field's coordinates are in units of this.
+const FIELD_LENGTH_M: f64 = 0.3;
+
+/// Where each block of unknowns begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unknowns {
+    pub fine: Knots,
+    pub coarse: Knots,
+}
+
+/// Which blocks are free to move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Free {
+    pub fine: bool,
+    pub bias: bool,
+    pub field: bool,
+    pub hand_eye: bool,
+    pub clock: bool,
+}
+
+/// One frame's row of the linear map from the unknowns to its correction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    fine: (usize, [f64; 4]),
+    coarse: (usize, [f64; 4]),
+    monomials: [f64; MONOMIALS],
+    /// world_from_body of the smoothed tracker at t_k + tau.
+    pub base: Isometry3<f64>,
+    pub world_from_base: Matrix3<f64>,
+    /// How the base moves by a second of tau, as a correction.
+    twist: Vector6<f64>,
+}
+
+impl Unknowns {
+    pub fn len(&self) -> usize {
+        self.globals().end
+    }
+
+    pub fn fine(&self) -> Range<usize> {
+        0..6 * self.fine.count
+    }
+
+    pub fn bias(&self) -> Range<usize> {
+        let start = self.fine().end;
+        start..start + 6 * self.coarse.count
+    }
+
+    pub fn globals(&self) -> Range<usize> {
+        let start = self.bias().end;
+        start..start + GLOBALS
+    }
+
+    pub fn field(&self) -> Range<usize> {
+        let start = self.globals().start;
+        start..start + FIELD
+    }
+
+    pub fn hand_eye(&self) -> Range<usize> {
+        let start = self.field().end;
+        start..start + 6
+    }
+
+    pub fn clock(&self) -> usize {
+        self.hand_eye().end
+    }
+
+    /// The row of a frame at a moment (of the splines' time); `middle` is where the field's polynomial is centred.
+    pub fn row(&self, t_s: f64, base: Isometry3<f64>, twist: Vector6<f64>, middle: &Vector3<f64>) -> Row {
+        let p = (base.translation.vector - middle) / FIELD_LENGTH_M;
+        let monomials = [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x];
+        let world_from_base = base.rotation.to_rotation_matrix().into_inner();
+        let (fine, coarse) = (self.fine.weights(t_s), self.coarse.weights(t_s));
+        Row { fine, coarse, monomials, base, world_from_base, twist }
+    }
+
+    /// The correction of one frame; `with_clock` adds what a change of tau does to it (for steps, not for poses: there
+    /// the base was read at t + tau already).
+    pub fn correction(&self, row: &Row, x: &[f64], with_clock: bool) -> Vector6<f64> {
+        let mut sum = Vector6::zeros();
+        for (first, (knot, weights)) in [(self.fine().start, &row.fine), (self.bias().start, &row.coarse)] {
+            for (a, weight) in weights.iter().enumerate() {
+                let at = first + 6 * (knot + a);
+                (0..6).for_each(|i| sum[i] += weight * x[at + i]);
+            }
+        }
+        let mut in_world = [Vector3::zeros(); 2];
+        let field = &x[self.field()];
+        for (coefficients, monomial) in field.chunks_exact(6).zip(row.monomials) {
+            for i in 0..3 {
+                in_world[0][i] += monomial * coefficients[i];
+                in_world[1][i] += monomial * coefficients[3 + i];
+            }
+        }
+        let in_body = in_world.map(|v| row.world_from_base.tr_mul(&v));
+        let eta = &x[self.hand_eye()];
+        for i in 0..3 {
+            sum[i] += in_body[0][i] + eta[i];
+            sum[3 + i] += in_body[1][i] + eta[3 + i];
+        }
+        if with_clock {
+            sum += row.twist * x[self.clock()];
+        }
+        sum
+    }
+
+    /// The transpose: adds one frame's force on its correction to the forces on the unknowns that are free.
+    pub fn spread(&self, row: &Row, force: &Vector6<f64>, free: &Free, out: &mut [f64]) {
+        let knots = [(free.fine, self.fine().start, &row.fine), (free.bias, self.bias().start, &row.coarse)];
+        for (_, first, (knot, weights)) in knots.into_iter().filter(|(is_free, ..)| *is_free) {
+            for (a, weight) in weights.iter().enumerate() {
+                let at = first + 6 * (knot + a);
+                (0..6).for_each(|i| out[at + i] += weight * force[i]);
+            }
+        }
+        self.spread_globally(row, force, free, &mut out[self.globals()]);
+    }
+
+    fn spread_globally(&self, row: &Row, force: &Vector6<f64>, free: &Free, out: &mut [f64]) {
+        if free.field {
+            let shift = row.world_from_base * force.fixed_rows::<3>(0);
+            let turn = row.world_from_base * force.fixed_rows::<3>(3);
+            for (coefficients, monomial) in out[..FIELD].chunks_exact_mut(6).zip(row.monomials) {
+                for i in 0..3 {
+                    coefficients[i] += monomial * shift[i];
+                    coefficients[3 + i] += monomial * turn[i];
+                }
+            }
+        }
+        if free.hand_eye {
+            (0..6).for_each(|i| out[FIELD + i] += force[i]);
+        }
+        if free.clock {
+            out[FIELD + 6] += row.twist.dot(force);
+        }
+    }
+
+    /// The derivative of the correction by the globals that are free: one column each.
+    pub fn global_columns(&self, row: &Row, free: &Free) -> Vec<[f64; GLOBALS]> {
+        let column = |axis: usize| {
+            let mut out = [0.0; GLOBALS];
+            let mut force = Vector6::zeros();
+            force[axis] = 1.0;
+            self.spread_globally(row, &force, free, &mut out);
+            out
+        };
+        (0..6).map(column).collect()
+    }
+}
+
+impl Row {
+    /// Knots and weights of the fine (`true`) or coarse spline.
+    pub fn knots(&self, fine: bool) -> &(usize, [f64; 4]) {
+        if fine { &self.fine } else { &self.coarse }
+    }
+
+    /// world_from_body after a correction: R = R_base exp(dr), p = p_base + R_base dt.
+    pub fn corrected(&self, correction: &Vector6<f64>) -> Isometry3<f64> {
+        let shift: Vector3<f64> = correction.fixed_rows::<3>(0).into();
+        let turn = nalgebra::UnitQuaternion::new(correction.fixed_rows::<3>(3).into_owned());
+        let translation = self.base.translation.vector + self.world_from_base * shift;
+        Isometry3::from_parts(translation.into(), self.base.rotation * turn)
+    }
+}
