@@ -1,6 +1,7 @@
 //! What is known of every node, and what happens to them, for whoever waits or watches.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{broadcast, watch};
 use wire::Phase;
 
@@ -176,6 +177,8 @@ impl Event {
 pub(crate) struct Board {
     status: watch::Sender<Status>,
     events: broadcast::Sender<Event>,
+    /// For each node, the number behind the last message that it has finished. It changes too often to be an event.
+    next_seq: Arc<Mutex<BTreeMap<String, u64>>>,
 }
 
 /// Events that wait for a listener who is slow; he is told how many he missed.
@@ -183,7 +186,7 @@ const EVENTS: usize = 1024;
 
 impl Board {
     pub(crate) fn new(status: Status) -> Self {
-        Self { status: watch::Sender::new(status), events: broadcast::Sender::new(EVENTS) }
+        Self { status: watch::Sender::new(status), events: broadcast::Sender::new(EVENTS), next_seq: Arc::default() }
     }
 
     pub(crate) fn tell(&self, event: Event) {
@@ -192,6 +195,14 @@ impl Board {
             status.apply(&event);
             let _ = self.events.send(event);
         });
+    }
+
+    pub(crate) fn note_finished_seq(&self, node: &str, seq: u64) {
+        self.next_seq.lock().unwrap_or_else(PoisonError::into_inner).insert(node.to_owned(), seq.saturating_add(1));
+    }
+
+    pub(crate) fn next_seq(&self, node: &str) -> u64 {
+        self.next_seq.lock().unwrap_or_else(PoisonError::into_inner).get(node).copied().unwrap_or(0)
     }
 
     pub(crate) fn status(&self) -> Status {

@@ -47,6 +47,7 @@ impl Desk {
         let closing = Arc::new(AtomicBool::new(false));
         let mut work = Work {
             phases: keeper.then(|| bus.publisher(&topic::run_phase())).transpose()?,
+            followed: (!keeper).then(|| bus.subscribe(&topic::run_phase(), 16)).transpose()?,
             orders: bus.subscribe(&topic::order(), 64)?,
             progress: bus.subscribe(&topic::progress("**"), PROGRESS_DEPTH)?,
             presence: bus.presence()?,
@@ -93,6 +94,8 @@ impl Drop for Desk {
 struct Work {
     bus: Bus,
     phases: Option<Publisher<RunPhase>>,
+    /// What the rig's keeper says, for a launcher that only lends its machine.
+    followed: Option<Subscriber<RunPhase>>,
     calibration: Option<Publisher<Calibration>>,
     orders: Subscriber<RunPhase>,
     progress: Subscriber<Progress>,
@@ -115,6 +118,9 @@ impl Work {
             }
             while let Some(order) = self.orders.next() {
                 self.obey(Order::from_wire(&order));
+            }
+            while let Some(told) = self.followed.as_mut().and_then(Subscriber::next) {
+                self.board.tell(Event::Phase { scan: told.header.scan, phase: told.header.phase });
             }
             self.note_presence();
             self.note_progress();
@@ -157,10 +163,11 @@ impl Work {
 
     fn note_progress(&mut self) {
         while let Some(progress) = self.progress.next() {
+            let (Some(node), scan) = (self.names.get(&progress.node).cloned(), progress.header.scan) else { continue };
+            self.board.note_finished_seq(&node, progress.finished_seq);
             if !progress.header.is_end() {
                 continue;
             }
-            let (Some(node), scan) = (self.names.get(&progress.node).cloned(), progress.header.scan) else { continue };
             if self.finished.insert(progress.node, scan).is_none_or(|before| before < scan) {
                 self.board.tell(Event::Finished { node, scan });
             }

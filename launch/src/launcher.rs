@@ -58,7 +58,7 @@ impl Launcher {
         let mut supervisors = JoinSet::new();
         for node in plan.nodes.iter().filter(mine) {
             let supervisor = Supervisor {
-                start: spec::start(&plan, node, &bus, &options.executable)?,
+                start: spec::start(&plan, node, &bus, &options.executable),
                 restart: node.restart,
                 board: board.clone(),
                 sink: options.sink.clone(),
@@ -165,7 +165,8 @@ impl Launcher {
     pub async fn stop(&mut self) -> Rung {
         let status = self.board.status();
         self.order(Order::End);
-        let finish = is_scanning(status.phase) || (status.phase == Phase::End && !status.all_finished());
+        let unfinished = is_scanning(status.phase) || (status.phase == Phase::End && !status.all_finished());
+        let finish = self.keeps_phase() && unfinished;
         let rung = stop::descend(&self.plan.run, &self.board, &self.rung, &self.hurry, finish).await;
         while self.supervisors.join_next().await.is_some() {}
         let (desk, router) = (self.desk.take(), self.router.take());

@@ -3,6 +3,7 @@
 use crate::log::{self, Line, Sink};
 use crate::stop::Rung;
 use anyhow::{Context as _, Result};
+use kit::NodeSpec;
 use rustix::process::{Pid, Signal, kill_process_group};
 use std::process::{ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,14 +14,14 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
 /// How to start a node.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Start {
     /// Its name in the launch file.
     pub(crate) name: String,
     /// The program and its arguments.
     pub(crate) command: Vec<String>,
     /// The line that it reads first.
-    pub(crate) spec: String,
+    pub(crate) spec: NodeSpec,
 }
 
 /// A node that runs.
@@ -43,6 +44,7 @@ const ALLOCATION: [(&str, &str); 2] =
 impl Process {
     /// Starts it. Only the launcher shall get the terminal's Ctrl-C, so it leads a group of its own.
     pub(crate) fn start(start: &Start, rung: watch::Receiver<Rung>, sink: &Sink) -> Result<Self> {
+        let spec = serde_json::to_string(&start.spec).context("writing the configuration")?;
         let (program, args) = start.command.split_first().context("no command")?;
         let mut child = Command::new(program)
             .args(args)
@@ -56,7 +58,7 @@ impl Process {
             .with_context(|| format!("cannot start {program}"))?;
         let pid = child.id().context("it ended at once")?;
         let stdin = child.stdin.take().context("no standard input")?;
-        let lifeline = tokio::spawn(hold(stdin, start.spec.clone(), rung));
+        let lifeline = tokio::spawn(hold(stdin, spec, rung));
         let last_words = Arc::<Mutex<String>>::default();
         let mut readers = Vec::new();
         if let Some(output) = child.stdout.take() {

@@ -69,7 +69,7 @@ fn start(args: &Args, recording: &Path, pictures: Pictures) -> Result<Start> {
     Ok(Start {
         name: "record".to_owned(),
         command: [&program, "node", "record", "--instance", &instance].map(str::to_owned).to_vec(),
-        spec: serde_json::to_string(&spec)?,
+        spec,
     })
 }
 

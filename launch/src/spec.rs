@@ -4,12 +4,11 @@ use crate::graph;
 use crate::plan::{Machine, Plan};
 use crate::planned::PlannedNode;
 use crate::process::Start;
-use anyhow::{Context as _, Result};
 use bus::BusConfig;
 use std::path::Path;
 
 /// How to start a node of the plan whose bus is at `bus`.
-pub(crate) fn start(plan: &Plan, node: &PlannedNode, bus: &BusConfig, executable: &Path) -> Result<Start> {
+pub(crate) fn start(plan: &Plan, node: &PlannedNode, bus: &BusConfig, executable: &Path) -> Start {
     let machine = node.machine.as_deref().and_then(|name| plan.machines.get(name));
     let program = match (&node.exec, machine) {
         (Some(exec), _) => exec.program.to_string_lossy().into_owned(),
@@ -19,14 +18,13 @@ pub(crate) fn start(plan: &Plan, node: &PlannedNode, bus: &BusConfig, executable
     let mut command = vec![program];
     command.extend(node.exec.iter().flat_map(|exec| exec.args.iter().cloned()));
     command.extend(["node", &node.kind, "--instance", &node.inputs.instance].map(str::to_owned));
-    let spec = spec(plan, node, &reached_from(bus, machine));
-    Ok(Start {
+    Start {
         name: node.name.clone(),
         command: machine
             .and_then(|machine| machine.ssh.as_ref())
             .map_or(command.clone(), |host| over_ssh(host, &command)),
-        spec: serde_json::to_string(&spec).context("writing the configuration")?,
-    })
+        spec: spec(plan, node, &reached_from(bus, machine)),
+    }
 }
 
 fn spec(plan: &Plan, node: &PlannedNode, bus: &BusConfig) -> kit::NodeSpec {
@@ -41,6 +39,7 @@ fn spec(plan: &Plan, node: &PlannedNode, bus: &BusConfig) -> kit::NodeSpec {
         wait_for: if node.source { others.map(PlannedNode::address).collect() } else { Vec::new() },
         inputs: node.inputs.bound.clone(),
         config: node.config.clone(),
+        next_seq: None,
         log: plan.run.log.clone(),
     }
 }

@@ -37,6 +37,7 @@ impl Supervisor {
                 self.say(&format!("failed for good: {reason}"));
                 return self.tell(|node| Event::Failed { node, reason });
             };
+            self.start.spec.next_seq = Some(self.board.next_seq(&self.start.name));
             self.say(&format!("failed: {reason}; again in {} ms", pause.as_millis()));
             self.tell(|node| Event::Restarting { node, reason: reason.clone() });
             let stopping = self.rung.wait_for(|rung| *rung > Rung::Run);

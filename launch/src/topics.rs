@@ -20,6 +20,7 @@ pub fn run(rig: &WhichRig) -> Result<()> {
     for (key, message, class) in topic::all() {
         let class = match class {
             Class::Frame => "reliable",
+            Class::Gathered => "reliable, newest kept",
             Class::Stream => "reliable, history kept",
             Class::Latched => "latest kept",
             Class::Trace => "dropped first",

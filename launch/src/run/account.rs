@@ -4,14 +4,14 @@ use super::Harvest;
 use geometry::TriangleMesh;
 use report::{Counts, Refused, Stage, Time};
 use std::time::Instant;
-use wire::Health;
+use wire::{Health, InputHealth};
 
 impl Harvest {
     /// How much of everything there was.
     pub fn counts(&self) -> Counts {
         let received = |kind: &str, stream: &str| {
-            let nodes = self.healths.values().filter(|health| health.node.starts_with(kind));
-            let inputs = nodes.flat_map(|health| &health.inputs).filter(|input| input.key.ends_with(stream));
+            let nodes = self.accounts().filter(|health| health.node.starts_with(kind));
+            let inputs = nodes.flat_map(|health| health.inputs).filter(|input| input.key.ends_with(stream));
             inputs.map(|input| input.received).sum()
         };
         let mesh = self.mesh.as_ref().map(TriangleMesh::from);
@@ -26,9 +26,26 @@ impl Harvest {
         }
     }
 
+    /// Why there is no point at all; `None` when there are some.
+    pub fn emptiness(&self) -> Option<String> {
+        if self.points > 0 {
+            return None;
+        }
+        let pictures = self.counts().frames;
+        let measures = |health: &Health| ["triangulate/", "register/"].iter().any(|kind| health.node.starts_with(kind));
+        let refused = self.accounts().filter(measures).flat_map(|health| health.refused);
+        let reasons: Vec<String> = refused.map(|refusal| format!("{} x {}", refusal.count, refusal.reason)).collect();
+        Some(match reasons.as_slice() {
+            [] => format!(
+                "the scan is empty: no stripe was seen in {pictures} pictures; is the laser on, and brighter than stripe.min_amplitude?"
+            ),
+            _ => format!("the scan is empty: no point came of {pictures} pictures; refused: {}", reasons.join(", ")),
+        })
+    }
+
     /// What each node did.
     pub fn stages(&self) -> Vec<Stage> {
-        self.healths.values().map(|health| self.stage(health)).collect()
+        self.accounts().map(|health| self.stage(&health)).collect()
     }
 
     fn stage(&self, health: &Health) -> Stage {
@@ -46,7 +63,7 @@ impl Harvest {
             latency_p50_ms: milliseconds(p50),
             latency_p99_ms: milliseconds(p99),
             lost: health.inputs.iter().map(|input| input.lost).sum(),
-            refused: health.refused.iter().map(|r| Refused { reason: r.reason.clone(), count: r.count }).collect(),
+            refused: refused(health),
         }
     }
 
@@ -67,4 +84,15 @@ impl Harvest {
         };
         parts.iter().filter_map(time).collect()
     }
+}
+
+/// What a node refused of the messages' contents, and the messages that it could not take at all.
+fn refused(health: &Health) -> Vec<Refused> {
+    let contents = health.refused.iter().map(|r| Refused { reason: r.reason.clone(), count: r.count });
+    let inputs = health.inputs.iter().filter(|input| input.refused > 0);
+    let whole = |input: &InputHealth| Refused {
+        reason: format!("message on {} that could not be read, or came again", input.key),
+        count: input.refused,
+    };
+    contents.chain(inputs.map(whole)).collect()
 }

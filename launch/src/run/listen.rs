@@ -94,7 +94,7 @@ impl Ears {
                 p50.push(health.latency_p50_nanos);
                 p99.push(health.latency_p99_nanos);
             }
-            harvest.healths.insert(health.node.clone(), health);
+            harvest.note(health);
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::launcher::{Launcher, Options};
 use crate::log::{self, Line, Sink};
 use crate::operator::Order;
 use crate::plan::Plan;
+use crate::running;
 use anyhow::{Context as _, Result, bail};
 use bars::Bars;
 use listen::Listener;
@@ -46,6 +47,12 @@ async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> 
     let options = Options { executable: std::env::current_exe()?, machine: None, sink };
     bars.starting(plan.nodes.len());
     let mut launcher = Launcher::start(plan, options).await?;
+    // For `limn top` and its like. Two demos may well run at once: only one of them is found.
+    let announced =
+        running::folder().and_then(|folder| running::announce(&folder, &launcher.plan().name, launcher.bus()));
+    if let Err(error) = &announced {
+        tracing::warn!("`limn top` and its like will not find this rig: {error:#}");
+    }
     let listener = Listener::start(launcher.bus(), bars.clone())?;
     let interrupted = tokio::signal::ctrl_c();
     let outcome = tokio::select! {
@@ -60,10 +67,12 @@ async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> 
         bars.say("done; the page stays up until Ctrl-C");
         let _ = tokio::signal::ctrl_c().await;
     }
+    drop(announced);
     launcher.stop().await;
     let outcome = outcome.and_then(|()| launcher.check());
     let harvest = tokio::task::spawn_blocking(move || listener.finish()).await?;
     bars.done();
+    let outcome = outcome.and_then(|()| harvest.emptiness().map_or(Ok(()), |why| Err(anyhow::anyhow!(why))));
     Ok((harvest, outcome))
 }
 

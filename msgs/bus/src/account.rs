@@ -15,6 +15,11 @@ pub struct SequenceAccount {
 }
 
 impl SequenceAccount {
+    /// Says which number comes first: whatever is missing before it is lost.
+    pub fn expect(&mut self, key: &str, seq: u64) {
+        self.expected.insert(key.to_owned(), seq);
+    }
+
     /// Takes note of a message and returns how many are missing before it. A publisher that was restarted counts from
     /// 0 again, which is no loss.
     pub fn note(&mut self, key: &str, header: &Header) -> u64 {

@@ -36,7 +36,7 @@ mod subscriber;
 pub use account::SequenceAccount;
 pub use config::{BusConfig, Tls};
 pub use presence::Presence;
-pub use publisher::Publisher;
+pub use publisher::{GATHERED_HISTORY, Publisher, STREAM_HISTORY};
 pub use raw::{RawMessage, RawSubscriber};
 pub use router::Router;
 pub use session::{Bus, Token};

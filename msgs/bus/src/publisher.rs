@@ -11,7 +11,9 @@ use zenoh::{Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
 
 /// How many messages of a stream its publisher keeps for a node that starts late (or again).
-const STREAM_HISTORY: usize = 1 << 17;
+pub const STREAM_HISTORY: usize = 1 << 17;
+/// How many pictures for colour: half a gigabyte at 1280x1024.
+pub const GATHERED_HISTORY: usize = 128;
 
 enum Line {
     Plain(pubsub::Publisher<'static>),
@@ -48,6 +50,7 @@ pub(crate) fn declare<M: Message>(session: &Session, topic: &Topic<M>) -> Result
         Class::Trace => {
             builder.congestion_control(CongestionControl::Drop).priority(Priority::Background).wait().map(Line::Plain)
         }
+        Class::Gathered => kept(builder, GATHERED_HISTORY),
         Class::Stream => kept(builder, STREAM_HISTORY),
         Class::Latched => kept(builder, 1),
     };

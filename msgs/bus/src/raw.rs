@@ -2,7 +2,8 @@
 
 use crate::ring::Ring;
 use crate::subscriber::{Line, listen};
-use crate::{BusError, publisher};
+use crate::{BusError, InputCounts, SequenceAccount, publisher};
+use wire::codec;
 use zenoh::qos::CongestionControl;
 use zenoh::{Session, Wait};
 
@@ -22,10 +23,13 @@ pub struct RawSubscriber {
     #[allow(dead_code, reason = "held for its drop")]
     line: Line,
     ring: Ring,
+    account: SequenceAccount,
+    counts: InputCounts,
 }
 
 pub(crate) fn declare(session: &Session, key_expression: &str, ring: Ring) -> Result<RawSubscriber, BusError> {
-    Ok(RawSubscriber { line: listen(session, key_expression, true, &ring)?, ring })
+    let line = listen(session, key_expression, true, &ring)?;
+    Ok(RawSubscriber { line, ring, account: SequenceAccount::default(), counts: InputCounts::default() })
 }
 
 pub(crate) fn forward(session: &Session, key: &str, schema: &str, bytes: Vec<u8>) -> Result<(), BusError> {
@@ -44,10 +48,23 @@ impl RawSubscriber {
         let sample = self.ring.pop()?;
         let encoding = sample.encoding().to_string();
         let schema = encoding.split_once(';').map_or("", |(_, schema)| schema).to_owned();
-        Some(RawMessage {
-            key: sample.key_expr().as_str().to_owned(),
-            schema,
-            bytes: sample.payload().to_bytes().into_owned(),
-        })
+        let (key, bytes) = (sample.key_expr().as_str().to_owned(), sample.payload().to_bytes().into_owned());
+        self.note(&key, &bytes);
+        Some(RawMessage { key, schema, bytes })
+    }
+
+    fn note(&mut self, key: &str, bytes: &[u8]) {
+        self.counts.received += 1;
+        let Ok(header) = codec::header(bytes) else {
+            self.counts.refused += 1;
+            return;
+        };
+        self.account.note(key, &header);
+        self.counts.lost = self.account.lost;
+    }
+
+    /// What has come, and what is missing in it.
+    pub fn counts(&self) -> &InputCounts {
+        &self.counts
     }
 }

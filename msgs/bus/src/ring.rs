@@ -50,6 +50,10 @@ impl Ring {
         Self { samples: Arc::default(), depth: depth.max(1), bell }
     }
 
+    pub(crate) fn depth(&self) -> usize {
+        self.depth
+    }
+
     pub(crate) fn push(&self, sample: Sample) {
         let mut samples = self.samples.lock().unwrap_or_else(PoisonError::into_inner);
         if samples.len() == self.depth {

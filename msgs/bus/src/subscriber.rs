@@ -15,10 +15,12 @@ pub(crate) enum Line {
 }
 
 pub(crate) fn listen(session: &Session, key: &str, history: bool, ring: &Ring) -> Result<Line, BusError> {
-    let ring = ring.clone();
+    let (ring, depth) = (ring.clone(), ring.depth());
     let builder = session.declare_subscriber(key.to_owned()).callback(move |sample| ring.push(sample));
     if history {
-        builder.history(HistoryConfig::default().detect_late_publishers()).wait().map(Line::WithHistory)
+        // More than the ring holds would only fall out of it.
+        let history = HistoryConfig::default().detect_late_publishers().max_samples(depth);
+        builder.history(history).wait().map(Line::WithHistory)
     } else {
         builder.wait().map(Line::Plain)
     }
@@ -59,7 +61,7 @@ pub(crate) fn declare<M: Message>(
     class: Class,
     ring: Ring,
 ) -> Result<Subscriber<M>, BusError> {
-    let history = matches!(class, Class::Stream | Class::Latched);
+    let history = matches!(class, Class::Gathered | Class::Stream | Class::Latched);
     Ok(Subscriber {
         line: listen(session, key, history, &ring)?,
         ring,
@@ -77,6 +79,13 @@ impl<M: Message> Subscriber<M> {
     /// history again.
     pub fn fresh_only(mut self) -> Self {
         self.fresh_only = true;
+        self
+    }
+
+    /// For a node that is started again: messages before this number are done with, those from it on that do not come are
+    /// lost.
+    pub fn expecting(mut self, seq: u64) -> Self {
+        self.account.expect(&self.key, seq);
         self
     }
 
@@ -98,8 +107,12 @@ impl<M: Message> Subscriber<M> {
                 Ok(None) => {}
                 Err(error) => {
                     self.counts.refused += 1;
-                    tracing::error!("{}: refused a message: {error}", sample.key_expr());
-                    self.counts.reason = Some(error.to_string());
+                    let reason = error.to_string();
+                    // Told once; the count tells how often.
+                    if self.counts.reason.as_ref() != Some(&reason) {
+                        tracing::error!("{}: refused a message: {reason}", sample.key_expr());
+                        self.counts.reason = Some(reason);
+                    }
                 }
             }
         }

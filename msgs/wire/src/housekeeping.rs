@@ -49,6 +49,8 @@ layout! {
         pub header: Header,
         /// kind/instance.
         pub node: String,
+        /// The number of that message on its own topic: a node that is started again counts from there.
+        pub finished_seq: u64,
     }
 }
 message!(Progress @ 1);

@@ -14,6 +14,9 @@ use std::marker::PhantomData;
 pub enum Class {
     /// Pictures: reliable, the sender waits; no history (they are large).
     Frame,
+    /// Pictures that a reader gathers until the end of the scan: as `Frame`, and the publisher keeps the newest few for
+    /// one that is started again.
+    Gathered,
     /// Measurements: reliable, the sender waits, and the publisher keeps them for a node that starts late.
     Stream,
     /// The latest state, kept for late comers.
@@ -75,7 +78,7 @@ topics! {
     /// The exposures of one camera; one that is for colour comes without its pixels ([`Frame::by_topic`]).
     frame(camera) -> Frame = "camera/{camera}/frame", Frame;
     /// Pictures of one camera that the lamp alone has lit: a reader of these is spared all others.
-    colour(camera) -> Frame = "camera/{camera}/colour", Frame;
+    colour(camera) -> Frame = "camera/{camera}/colour", Gathered;
     /// Readings of one tracker.
     pose(tracker) -> Pose = "tracker/{tracker}/pose", Stream;
     /// Laser lines found in the pictures of one camera.

@@ -171,6 +171,6 @@ fn what_nodes_say_of_themselves() {
         cpu_nanos: 123,
         busy_nanos: 456,
     });
-    check(Progress { header: header(), node: "stripe/head".to_owned() });
+    check(Progress { header: header(), node: "stripe/head".to_owned(), finished_seq: 258 });
     check(LogLine { header: header(), node: "stripe/head".to_owned(), level: LogLevel::Warn, text: "slow".to_owned() });
 }

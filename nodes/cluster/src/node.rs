@@ -1,17 +1,15 @@
 //! The wiring: scans come, what changed of the cloud goes a few times a second, and all of it at the end.
 
 use crate::{BallClusterer, Config};
-use kit::Node;
+use kit::{Node, STREAM_HISTORY};
 use wire::{Header, Phase, topic};
-
-const DEPTH: usize = 4096;
 
 /// Clusters the scans of a camera until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let every_nanos = (config.publish_every_s * 1e9) as i64;
     let mut clusterer = BallClusterer::new(config)?;
-    let mut scans = node.stream(&topic::scan(node.spec().source_of("camera")), DEPTH)?;
+    let mut scans = node.stream(&topic::scan(node.spec().source_of("camera")), STREAM_HISTORY)?;
     let mut clouds = node.output(&topic::cloud())?;
     node.ready()?;
     let mut published_nanos = 0;
@@ -23,6 +21,9 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
                 whole.header = Header { phase: Phase::End, ..whole.header };
                 whole.refused.iter().for_each(|refusal| node.refuse(&refusal.reason, refusal.count));
                 tracing::info!("{} balls of {} points", whole.points.len(), clusterer.held().points);
+                if clusterer.held().points == 0 {
+                    tracing::warn!("the scan is empty: not one point has come");
+                }
                 clouds.send(whole)?;
                 published_nanos = 0;
             } else if scan.header.stamp_nanos >= published_nanos + every_nanos {

@@ -1,14 +1,14 @@
 //! The wiring: the final cloud, surface and model come, and files are written.
 
 use crate::{Config, ExportError, Exporter, Written};
-use kit::Node;
+use kit::{Node, STREAM_HISTORY};
 use wire::topic;
 
 /// Writes the files of every scan until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let mut exporter = Exporter::new(config)?;
-    let mut clouds = node.input(&topic::cloud(), 4096)?;
+    let mut clouds = node.input(&topic::cloud(), STREAM_HISTORY)?;
     let mut meshes = node.input(&topic::mesh(), 4)?;
     let mut models = node.input(&topic::textured(), 2)?;
     node.ready()?;

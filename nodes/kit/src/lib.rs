@@ -31,9 +31,9 @@ mod pace;
 mod ports;
 mod spec;
 
-pub use bus::{Bus, BusConfig, Presence, RawMessage, RawSubscriber};
+pub use bus::{Bus, BusConfig, GATHERED_HISTORY, Presence, RawMessage, STREAM_HISTORY};
 pub use lifeline::Stopper;
 pub use node::Node;
 pub use pace::{Go, Pace};
-pub use ports::{Input, Output, Pictures};
+pub use ports::{Input, Output, Pictures, RawInput};
 pub use spec::NodeSpec;

@@ -4,12 +4,12 @@ use crate::health::Account;
 use crate::lifeline::Stopper;
 use crate::log::{self, Lines};
 use crate::pace::{Go, Pace, Window, system_nanos, until};
-use crate::ports::{Input, Output, Pictures};
+use crate::ports::{Input, Output, Pictures, RawInput};
 use crate::spec::NodeSpec;
 use anyhow::{Context as _, bail};
-use bus::{Bus, RawSubscriber, Token};
+use bus::{Bus, Token};
 use std::time::{Duration, Instant};
-use wire::topic::{self, Topic};
+use wire::topic::{self, Class, Topic};
 use wire::{Calibration, Clock, Header, Health, LogLine, Message, Phase, Progress, RunPhase};
 
 /// How long a node sleeps at most before it looks whether it was told to stop.
@@ -53,7 +53,7 @@ impl Node {
         let window = match spec.pace {
             Pace::Fast if !spec.consumers.is_empty() => {
                 let progress = Input::new(bus.subscribe(&topic::progress("**"), 4096)?);
-                Some(Window::new(progress, &spec.consumers, spec.window_ms))
+                Some(Window::new(progress, bus.presence()?, &spec.consumers, spec.window_ms))
             }
             _ => None,
         };
@@ -97,9 +97,14 @@ impl Node {
         Ok(input)
     }
 
-    /// Opens an input of measurements, which come once each: a restarted sender's history is not handed on again.
+    /// Opens an input of measurements, which come once each: a restarted sender's history is not handed on again. When
+    /// this node itself is started again, it gets all that is kept, and counts as lost what is not.
     pub fn stream<M: Message>(&mut self, topic: &Topic<M>, depth: usize) -> anyhow::Result<Input<M>> {
-        let input = Input::new(self.bus.subscribe(topic, depth)?.fresh_only());
+        let mut subscriber = self.bus.subscribe(topic, depth)?.fresh_only();
+        if let Some(next) = self.spec.next_seq {
+            subscriber = subscriber.expecting(if topic.class == Class::Frame { next } else { 0 });
+        }
+        let input = Input::new(subscriber);
         self.account.inputs.push((topic.key.clone(), input.counts()));
         Ok(input)
     }
@@ -112,8 +117,10 @@ impl Node {
     }
 
     /// Opens an input of everything whose key matches, undecoded.
-    pub fn raw(&mut self, key_expression: &str, depth: usize) -> anyhow::Result<RawSubscriber> {
-        Ok(self.bus.subscribe_raw(key_expression, depth)?)
+    pub fn raw(&mut self, key_expression: &str, depth: usize) -> anyhow::Result<RawInput> {
+        let input = RawInput::new(self.bus.subscribe_raw(key_expression, depth)?);
+        self.account.inputs.push((key_expression.to_owned(), input.counts()));
+        Ok(input)
     }
 
     /// Sends bytes as they are: for replaying.
@@ -206,7 +213,7 @@ impl Node {
         if header.is_end() {
             reached.stamp_nanos = i64::MAX / 2;
         }
-        self.progress.send(Progress { header: reached, node: self.spec.name() })?;
+        self.progress.send(Progress { header: reached, node: self.spec.name(), finished_seq: header.seq })?;
         self.say();
         Ok(())
     }

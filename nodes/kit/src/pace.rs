@@ -1,6 +1,7 @@
 //! When a source may send: in real time, or as fast as the slowest of its consumers.
 
 use crate::ports::Input;
+use bus::Presence;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -41,7 +42,10 @@ pub(crate) fn until(epoch_nanos: i64, stamp_nanos: i64) -> Option<Duration> {
 
 /// How far each consumer has come.
 pub(crate) struct Window {
-    pub(crate) progress: Input<Progress>,
+    progress: Input<Progress>,
+    presence: Presence,
+    /// How often a node had become ready when it was last looked at.
+    arrivals: u64,
     reached: BTreeMap<String, i64>,
     scan: u64,
     window_nanos: i64,
@@ -50,9 +54,10 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    pub(crate) fn new(progress: Input<Progress>, consumers: &[String], window_ms: u64) -> Self {
+    pub(crate) fn new(progress: Input<Progress>, presence: Presence, consumers: &[String], window_ms: u64) -> Self {
         let reached = consumers.iter().map(|node| (node.clone(), 0)).collect();
-        Self { progress, reached, scan: 0, window_nanos: window_ms as i64 * 1_000_000, admitted: None }
+        let window_nanos = window_ms as i64 * 1_000_000;
+        Self { progress, presence, arrivals: 0, reached, scan: 0, window_nanos, admitted: None }
     }
 
     /// A new scan starts at 0 for everyone.
@@ -72,6 +77,11 @@ impl Window {
             }
         }
         let admitted = self.admitted.unwrap_or(i64::MIN);
+        // A node has come back: what was on its way to it when it died will never be reported as done, by nobody.
+        let arrivals = self.presence.arrivals();
+        if std::mem::replace(&mut self.arrivals, arrivals) != arrivals {
+            self.reached.values_mut().for_each(|stamp| *stamp = (*stamp).max(admitted));
+        }
         let may = |reached: &i64| stamp_nanos <= reached + self.window_nanos || admitted <= *reached;
         let admits = self.reached.values().all(may);
         if admits {

@@ -1,6 +1,6 @@
 //! Inputs and outputs of a node, with their accounts.
 
-use bus::{BusError, InputCounts, Publisher, Subscriber};
+use bus::{BusError, InputCounts, Publisher, RawMessage, RawSubscriber, Subscriber};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use wire::{Frame, Message};
@@ -42,6 +42,35 @@ impl<M: Message> Input<M> {
             newest = Some(message);
         }
         newest
+    }
+}
+
+/// Messages of all topics whose keys match, as they travelled, oldest first.
+pub struct RawInput {
+    subscriber: RawSubscriber,
+    counts: SharedCounts,
+}
+
+impl RawInput {
+    pub(crate) fn new(subscriber: RawSubscriber) -> Self {
+        Self { subscriber, counts: SharedCounts::default() }
+    }
+
+    pub(crate) fn counts(&self) -> SharedCounts {
+        self.counts.clone()
+    }
+
+    /// The oldest message that waits.
+    #[allow(clippy::should_implement_trait, reason = "an input never ends")]
+    pub fn next(&mut self) -> Option<RawMessage> {
+        let message = self.subscriber.next()?;
+        let counts = self.subscriber.counts();
+        let mut shared = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        if counts.lost > shared.lost {
+            tracing::error!("{}: {} messages lost", message.key, counts.lost - shared.lost);
+        }
+        shared.clone_from(counts);
+        Some(message)
     }
 }
 

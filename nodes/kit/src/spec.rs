@@ -37,6 +37,10 @@ pub struct NodeSpec {
     /// The node's own configuration.
     #[serde(default)]
     pub config: serde_json::Value,
+    /// For a node that is started again: the number, on its own topic, of the message behind the last one that its former
+    /// process has finished. What came from there on, and nobody has kept, is lost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_seq: Option<u64>,
     /// What is logged: `info`, `debug`, `warn`, or a filter as `RUST_LOG` has it.
     #[serde(default = "default_log")]
     pub log: String,
@@ -63,6 +67,7 @@ impl NodeSpec {
             wait_for: Vec::new(),
             inputs: BTreeMap::new(),
             config: serde_json::Value::Null,
+            next_seq: None,
             log: default_log(),
         }
     }

@@ -2,12 +2,10 @@
 
 use crate::{Config, FrameStore, Painter};
 use geometry::TrajectoryBuffer;
-use kit::{Input, Node};
+use kit::{GATHERED_HISTORY, Input, Node, STREAM_HISTORY};
 use std::time::Instant;
 use wire::{Frame, Header, Mesh, Model, Phase, Trajectory, topic};
 
-const FRAMES: usize = 32;
-const TRAJECTORIES: usize = 1 << 14;
 /// Between two samples of the way, a frame's place is taken from them when they are no further apart.
 const GAP_NANOS: i64 = 100_000_000;
 
@@ -41,8 +39,8 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let bound_bytes = config.memory_mib << 20;
     let camera = node.spec().source_of("camera").to_owned();
     let mut inputs = Inputs {
-        frames: node.stream(&topic::colour(&camera), FRAMES)?,
-        way: node.stream(&topic::trajectory(&camera), TRAJECTORIES)?,
+        frames: node.stream(&topic::colour(&camera), GATHERED_HISTORY)?,
+        way: node.stream(&topic::trajectory(&camera), STREAM_HISTORY)?,
         meshes: node.input(&topic::mesh(), 4)?,
     };
     let mut models = node.output(&topic::textured())?;

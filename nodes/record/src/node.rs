@@ -5,11 +5,11 @@
 
 use crate::{Config as Packing, Recorder};
 use anyhow::{Context as _, bail};
-use kit::{Node, RawMessage, RawSubscriber};
+use kit::{Node, RawInput, RawMessage};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use wire::{Header, Phase, codec, topic};
+use wire::{Header, codec, topic};
 
 /// Which pictures are kept: those that the lamp alone has lit, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -55,7 +55,7 @@ fn kept(pictures: Pictures) -> Vec<(String, usize)> {
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let inputs = kept(config.pictures).into_iter().map(|(key, depth)| node.raw(&key, depth));
-    let mut inputs: Vec<RawSubscriber> = inputs.collect::<anyhow::Result<_>>()?;
+    let mut inputs: Vec<RawInput> = inputs.collect::<anyhow::Result<_>>()?;
     let notes = [("limn", env!("CARGO_PKG_VERSION")), ("configuration", &config.rig_config)];
     let notes: BTreeMap<String, String> = notes.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     let mut recorder = Recorder::create(&config.file, config.packing.clone(), &notes)?;
@@ -66,18 +66,16 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             while let Some(message) = input.next() {
                 let Some(header) = keep(&mut node, &mut recorder, &message)? else { continue };
                 let is_stream = ["camera/", "stripe/", "tracker/"].iter().any(|kind| message.key.starts_with(kind));
-                if is_stream && begun.insert(message.key.clone()) {
+                if !is_stream {
+                    continue;
+                }
+                begun.insert(message.key.clone());
+                if !header.is_end() {
                     ended.remove(&message.key);
-                }
-                if is_stream && header.is_end() {
-                    ended.insert(message.key.clone());
-                }
-                if is_stream && !header.is_end() {
                     node.finished(&header)?;
-                }
-                if is_stream && header.is_end() && ended.len() == begun.len() {
+                } else if ended.insert(message.key.clone()) && ended.len() == begun.len() {
                     recorder.flush().context("writing the recording")?;
-                    node.finished(&Header { phase: Phase::End, ..header })?;
+                    node.finished(&header)?;
                 }
             }
         }

@@ -1,18 +1,16 @@
 //! The wiring: changes of the cloud come, the surface goes once in a while, and the clean one at the end.
 
 use crate::{Config, Surfer};
-use kit::Node;
+use kit::{Node, STREAM_HISTORY};
 use std::time::{Duration, Instant};
 use wire::{Header, Phase, topic};
-
-const DEPTH: usize = 4096;
 
 /// Keeps the surface of the cloud until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let live_every = Duration::from_secs_f64(config.live_every_s);
     let mut surfer = Surfer::new(config)?;
-    let mut clouds = node.input(&topic::cloud(), DEPTH)?;
+    let mut clouds = node.input(&topic::cloud(), STREAM_HISTORY)?;
     let mut meshes = node.output(&topic::mesh())?;
     node.ready()?;
     let (mut published, mut changed) = (Instant::now(), false);

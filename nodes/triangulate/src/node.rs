@@ -1,16 +1,14 @@
 //! The wiring: a stripe comes, its profile goes.
 
 use crate::{Config, Triangulator};
-use kit::Node;
+use kit::{Node, STREAM_HISTORY};
 use wire::{Bulk, Profile, topic};
-
-const DEPTH: usize = 256;
 
 /// Triangulates every stripe of a camera until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     config.check()?;
-    let mut stripes = node.stream(&topic::stripe(node.spec().source_of("camera")), DEPTH)?;
+    let mut stripes = node.stream(&topic::stripe(node.spec().source_of("camera")), STREAM_HISTORY)?;
     let mut profiles = node.output(&topic::profile(node.instance()))?;
     let rig = node.spec().source_of("rig").to_owned();
     let calibration = node.calibration(&rig)?;
