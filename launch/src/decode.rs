@@ -25,29 +25,14 @@ impl<M: Message + std::fmt::Debug> Shown for M {
 
 fn visit<T>(schema: &str, bytes: &[u8], see: impl FnOnce(&dyn Shown) -> T) -> Result<T, codec::DecodeError> {
     macro_rules! any {
-        ($($message:ident),*) => {
+        ($($message:ty),*) => {
             match schema.split('@').next().unwrap_or("") {
-                $(<wire::$message as Message>::NAME => decode::<wire::$message>(schema, bytes).map(|message| see(&message)),)*
-                _ => Err(codec::DecodeError::Schema { expected: "a message of this limn".into(), got: format!("{schema:?}") }),
+                $(<$message as Message>::NAME => decode::<$message>(schema, bytes).map(|message| see(&message)),)*
+                _ => Err(codec::unknown(schema)),
             }
         };
     }
-    any!(
-        Calibration,
-        Cloud,
-        Frame,
-        Health,
-        LogLine,
-        Mesh,
-        Model,
-        Pose,
-        Profile,
-        Progress,
-        RunPhase,
-        Scan,
-        Stripe,
-        Trajectory
-    )
+    wire::for_all_messages!(any)
 }
 
 fn decode<M: Message>(schema: &str, bytes: &[u8]) -> Result<M, codec::DecodeError> {

@@ -1,11 +1,38 @@
 //! All messages, told in words: what stands in a recording beside the bytes.
 
+use crate::Message;
 use crate::codec::schema;
-use crate::{
-    Calibration, Cloud, Frame, Health, LogLine, Mesh, Message, Model, Pose, Profile, Progress, RunPhase, Scan, Stripe,
-    Trajectory,
-};
 use std::collections::BTreeMap;
+
+/// The only list of all messages: hands their types to another macro, as `mine!(wire::Calibration, wire::Cloud, ...)`.
+///
+/// ```
+/// macro_rules! names {
+///     ($($message:ty),*) => { [$(<$message as wire::Message>::NAME),*] };
+/// }
+/// assert!(wire::for_all_messages!(names).contains(&"Frame"));
+/// ```
+#[macro_export]
+macro_rules! for_all_messages {
+    ($mine:ident) => {
+        $mine!(
+            $crate::Calibration,
+            $crate::Cloud,
+            $crate::Frame,
+            $crate::Health,
+            $crate::LogLine,
+            $crate::Mesh,
+            $crate::Model,
+            $crate::Pose,
+            $crate::Profile,
+            $crate::Progress,
+            $crate::RunPhase,
+            $crate::Scan,
+            $crate::Stripe,
+            $crate::Trajectory
+        )
+    };
+}
 
 /// The fields of a message and of all that it is made of.
 pub fn layout_text<M: Message>() -> String {
@@ -22,22 +49,7 @@ pub fn layout_text<M: Message>() -> String {
 /// Schema and layout of every message of this version.
 pub fn catalogue() -> BTreeMap<String, String> {
     macro_rules! entries {
-        ($($message:ty),* $(,)?) => { BTreeMap::from([$((schema::<$message>(), layout_text::<$message>())),*]) };
+        ($($message:ty),*) => { BTreeMap::from([$((schema::<$message>(), layout_text::<$message>())),*]) };
     }
-    entries!(
-        Calibration,
-        Cloud,
-        Frame,
-        Health,
-        LogLine,
-        Mesh,
-        Model,
-        Pose,
-        Profile,
-        Progress,
-        RunPhase,
-        Scan,
-        Stripe,
-        Trajectory,
-    )
+    crate::for_all_messages!(entries)
 }

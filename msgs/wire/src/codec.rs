@@ -1,6 +1,7 @@
 //! Messages to bytes and back: the only file that names bincode.
 
 use crate::{Header, Message};
+use std::cmp::Ordering;
 
 /// No message is larger; a decoder refuses lengths beyond it before it allocates.
 pub const MAX_BYTES: usize = 1 << 29;
@@ -31,14 +32,14 @@ pub enum DecodeError {
         left: usize,
     },
     /// The sender speaks another version.
-    #[error(
-        "expected {expected}, got {got}: the sender and this reader were built from different versions of limn; update the older one"
-    )]
+    #[error("expected {expected}, got {got}: {advice}")]
     Schema {
         /// What this reader knows.
         expected: String,
         /// What came.
         got: String,
+        /// Which of the two is to be updated.
+        advice: &'static str,
     },
 }
 
@@ -76,5 +77,21 @@ pub fn schema<M: Message>() -> String {
 /// Refuses what another version wrote, before anything is decoded.
 pub fn check_schema<M: Message>(got: &str) -> Result<(), DecodeError> {
     let expected = schema::<M>();
-    if got == expected { Ok(()) } else { Err(DecodeError::Schema { expected, got: got.to_owned() }) }
+    if got == expected {
+        return Ok(());
+    }
+    let version = got.strip_prefix(M::NAME).and_then(|rest| rest.strip_prefix('@')?.split(':').next()?.parse().ok());
+    let advice = match version.map(|version: u32| version.cmp(&M::VERSION)) {
+        Some(Ordering::Greater) => "this node is the older one: update it",
+        Some(Ordering::Less) => "the node that sends this is the older one: update it",
+        Some(Ordering::Equal) => "sender and reader were built from different sources: update the older one",
+        None => "who sends this is no node of limn, or sends on the wrong topic",
+    };
+    Err(DecodeError::Schema { expected, got: got.to_owned(), advice })
+}
+
+/// What a reader of all messages says of one that it does not know at all.
+pub fn unknown(got: &str) -> DecodeError {
+    let (expected, got) = ("a message of this limn".to_owned(), format!("{got:?}"));
+    DecodeError::Schema { expected, got, advice: "another version wrote it, or somebody else" }
 }
