@@ -1,5 +1,7 @@
 //! Whole rigs as real processes on a real bus: what the tests in `tests/` share.
 
+pub mod rig;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -13,6 +15,72 @@ pub fn limn() -> Command {
         Some(path) => Command::new(path),
         None => panic!("the program limn is not built: run `cargo test --workspace`"),
     }
+}
+
+/// A file of the project.
+pub fn repository(path: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    root.canonicalize().unwrap_or(root).join(path)
+}
+
+/// `limn demo` without a page, on a sweep that takes a few seconds: the coarse camera, the exact tracker.
+pub fn short_demo(out: &Path) -> Command {
+    let mut demo = limn();
+    demo.args(["demo", "--headless", "--rig", "paper", "--seconds", "6", "--out"]).arg(out);
+    demo
+}
+
+/// The same scan by `limn up`, which ends when it is done.
+pub fn short_up(out: &Path) -> Command {
+    let mut up = limn();
+    up.arg("up").arg(repository("launch/demo.toml"));
+    short_sets(&mut up, out);
+    up
+}
+
+/// What makes a launch file that includes the demo's a short scan into a folder.
+///
+/// # Panics
+/// When the folder cannot be made.
+pub fn short_sets(up: &mut Command, out: &Path) {
+    if let Err(error) = std::fs::create_dir_all(out) {
+        panic!("{}: {error}", out.display());
+    }
+    let rig = repository("config/rigs/paper.toml");
+    let (export, record) = (format!("export.folder={out:?}"), format!("record.file={:?}", out.join("scan.mcap")));
+    let rigs = ["rig.file", "camera.rig", "tracker.rig"].map(|key| format!("{key}={rig:?}"));
+    let others = ["run.pace=fast", "nodes.view.enabled=false", "camera.seconds=6.0", "tracker.seconds=6.0"];
+    for set in others.map(str::to_owned).iter().chain(&rigs).chain([&export, &record]) {
+        up.args(["--set", set]);
+    }
+}
+
+/// A number of a report, by its path.
+///
+/// # Panics
+/// When it is not there.
+pub fn number(report: &serde_json::Value, path: &str) -> f64 {
+    match report.pointer(path).and_then(serde_json::Value::as_f64) {
+        Some(number) => number,
+        None => panic!("{path} is not in {report:#}"),
+    }
+}
+
+/// Fails unless a file has the same bytes in both folders.
+///
+/// # Panics
+/// When it has not.
+pub fn same_bytes(a: &Path, b: &Path, file: &str) {
+    let read = |folder: &Path| match std::fs::read(folder.join(file)) {
+        Ok(bytes) => bytes,
+        Err(error) => panic!("{}: {error}", folder.join(file).display()),
+    };
+    assert!(read(a) == read(b), "{file} differs between {} and {}", a.display(), b.display());
+}
+
+/// Messages lost, on all inputs of all nodes.
+pub fn lost(report: &serde_json::Value) -> u64 {
+    report["stages"].as_array().into_iter().flatten().filter_map(|stage| stage["lost"].as_u64()).sum()
 }
 
 /// Runs it to its end, and fails with all that it said unless it succeeded.

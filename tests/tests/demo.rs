@@ -3,20 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
 use std::path::Path;
-use system_tests::{limn, report, succeed};
-
-fn number(report: &serde_json::Value, path: &str) -> f64 {
-    report.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{path} is not in {report:#}"))
-}
-
-fn lost(report: &serde_json::Value) -> f64 {
-    report["stages"].as_array().unwrap().iter().map(|stage| number(stage, "/lost")).sum()
-}
-
-fn same_bytes(a: &Path, b: &Path, file: &str) {
-    let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
-    assert!(read(a) == read(b), "{file} differs between {} and {}", a.display(), b.display());
-}
+use system_tests::{limn, lost, number, report, same_bytes, succeed};
 
 #[test]
 fn a_short_sweep_gives_an_exact_coloured_model_and_its_recording_gives_it_again() {
@@ -40,7 +27,7 @@ fn a_short_sweep_gives_an_exact_coloured_model_and_its_recording_gives_it_again(
     ] {
         assert!(live.join(file).metadata().is_ok_and(|file| file.len() > 0), "{file} is missing or empty");
     }
-    assert_eq!(lost(&told), 0.0);
+    assert_eq!(lost(&told), 0);
     assert!(number(&told, "/counts/points") > 100_000.0);
     assert!(number(&told, "/comparison/model_to_truth/rms_mm") < 0.25);
     assert!(number(&told, "/comparison/model_to_truth/p95_mm") < 0.6);
@@ -60,7 +47,7 @@ fn a_short_sweep_gives_an_exact_coloured_model_and_its_recording_gives_it_again(
         let mut model = limn();
         model.arg("model").arg(live.join("scan.mcap")).arg("-o").arg(out);
         succeed(model.args(sets.iter().flat_map(|set| ["--set", set])));
-        assert_eq!(lost(&report(out)), 0.0);
+        assert_eq!(lost(&report(out)), 0);
     }
     for file in ["cloud.ply", "mesh.ply", "mesh.stl", "model.glb", "model.obj", "model.png"] {
         same_bytes(&again, &once_more, file);
