@@ -8,9 +8,13 @@ use std::process::Command;
 
 /// Library of the simulator's world: no node.
 const WORLD: &str = "world";
-const NODES: [&str; 12] = [
+/// Library of the trackers on serial ports: no node.
+const SERIAL_LINE: &str = "serial_line";
+const NODES: [&str; 14] = [
     "camera_sim",
     "tracker_sim",
+    "tracker_flock",
+    "tracker_polhemus",
     "stripe",
     "triangulate",
     "register",
@@ -52,6 +56,7 @@ fn each_crate_knows_only_what_it_may() {
         ("bus", vec!["wire"]),
         ("kit", vec!["wire", "bus"]),
         (WORLD, vec!["wire", "geometry", "formats"]),
+        (SERIAL_LINE, vec![]),
         ("report", vec!["wire", "geometry", "formats"]),
     ]);
     for node in NODES {
@@ -59,6 +64,8 @@ fn each_crate_knows_only_what_it_may() {
     }
     allowed.insert("camera_sim", vec!["wire", "geometry", "formats", "kit", WORLD]);
     allowed.insert("tracker_sim", vec!["wire", "geometry", "formats", "kit", WORLD]);
+    allowed.insert("tracker_flock", vec!["wire", "geometry", "formats", "kit", SERIAL_LINE]);
+    allowed.insert("tracker_polhemus", vec!["wire", "geometry", "formats", "kit", SERIAL_LINE]);
     for (name, dependencies) in &all {
         let Some(allowed) = allowed.get(name.as_str()) else {
             assert!(matches!(name.as_str(), "limn" | "system_tests"), "{name} is not in ARCHITECTURE.md's table");
@@ -72,8 +79,14 @@ fn each_crate_knows_only_what_it_may() {
 
 #[test]
 fn what_is_heavy_or_may_change_is_named_by_one_crate_alone() {
-    let owners =
-        [("zenoh", "bus"), ("zenoh-ext", "bus"), ("bincode", "wire"), ("rerun", "view"), ("parry3d", "geometry")];
+    let owners = [
+        ("zenoh", "bus"),
+        ("zenoh-ext", "bus"),
+        ("bincode", "wire"),
+        ("rerun", "view"),
+        ("parry3d", "geometry"),
+        ("serialport", SERIAL_LINE),
+    ];
     for (name, dependencies) in dependencies() {
         for (library, owner) in owners {
             assert!(!dependencies.contains(library) || name == owner, "{name} names {library}; only {owner} may");
