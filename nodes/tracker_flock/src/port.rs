@@ -4,7 +4,7 @@ mod examination;
 
 use crate::config::Config;
 use crate::protocol::address::addressed;
-use crate::protocol::commands::{self, POINT, Step};
+use crate::protocol::commands::{self, POINT, Step, XON};
 use crate::protocol::decoder::Decoder;
 use crate::protocol::reading::{QuaternionSense, Reading, settle_sense};
 use crate::protocol::records::{Format, Layout, Record};
@@ -62,7 +62,7 @@ impl Flock {
 
     /// Ends the stream and lets it run dry: answers to EXAMINE have no mark of their own.
     fn hush(&self, line: &mut Line) -> Result<(), Trouble> {
-        line.write(&[POINT])?;
+        line.write(&[XON, POINT])?;
         if line.drain(QUIET, NEVER_QUIET)? { Ok(()) } else { Err(Trouble::Device(self.garbage(&[]))) }
     }
 
@@ -136,6 +136,9 @@ impl Device for Flock {
         let found = Examination { line, config: &self.config }.units(greeting)?;
         Self::carry_out(line, &commands::settings(&self.config))?;
         let mut words = found.words.clone();
+        if let Some(complaint) = (Examination { line, config: &self.config }).complaint()? {
+            words += &format!(", which did not take all settings: {complaint}");
+        }
         self.layout.group = false;
         if self.config.output.has_quaternion() {
             words += &self.settle(line, &found)?;

@@ -4,6 +4,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
+use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, World};
 use tracker_flock::protocol::address::addressed;
 use tracker_flock::protocol::decoder::Decoder;
 use tracker_flock::protocol::errors::{DeviceError, Severity};
@@ -180,6 +181,16 @@ fn formats() -> impl Strategy<Value = Layout> {
 }
 
 proptest! {
+    #[test]
+    fn an_emulator_survives_any_host(bytes in prop::collection::vec(any::<u8>(), 0..400), units in 0u8..4) {
+        let world: World = Box::new(|_, _| (Vector3::new(0.1, 0.2, 0.3), UnitQuaternion::identity()));
+        let mut flock = FlockEmulator::new(EmulatorConfig { units, filters: true, ..EmulatorConfig::default() }, world);
+        for (k, byte) in bytes.into_iter().enumerate() {
+            flock.hear(&[byte], k as i64 * 3_000_000);
+            while flock.speak(k as i64 * 3_000_000).is_some() {}
+        }
+    }
+
     #[test]
     fn words_come_back_without_their_low_bits(word: i16) {
         let [low, high] = encode_word(word);

@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use tracker_polhemus::Config;
+use tracker_polhemus::emulator::{EmulatorConfig, PolhemusEmulator, World};
 use tracker_polhemus::protocol::commands::{output_list, settings, stream};
 use tracker_polhemus::protocol::decoder::Decoder;
 use tracker_polhemus::protocol::records::{Family, Item, Layout, Record, encode};
@@ -126,6 +128,17 @@ fn families() -> impl Strategy<Value = Family> {
 }
 
 proptest! {
+    #[test]
+    fn an_emulator_survives_any_host(family in families(), bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let world: World = Box::new(|_, _| (Vector3::new(0.1, 0.2, 0.3), UnitQuaternion::identity()));
+        let mut device = PolhemusEmulator::new(EmulatorConfig::of(family), world);
+        device.hear(b"C\r", 0);
+        for (k, byte) in bytes.into_iter().enumerate() {
+            device.hear(&[byte], k as i64 * 3_000_000);
+            while device.speak(k as i64 * 3_000_000).is_some() {}
+        }
+    }
+
     #[test]
     fn after_any_bytes_the_next_record_but_one_is_read(
         family in families(), garbage in prop::collection::vec(any::<u8>(), 0..300),

@@ -92,6 +92,12 @@ impl Examination<'_> {
         Ok(Found { words: format!("{words}, sensors on units {with_sensor:?}"), with_sensor })
     }
 
+    /// What it says to the settings; an old revision does not know all of them, and measures all the same.
+    pub fn complaint(&mut self) -> Result<Option<&'static str>, Trouble> {
+        let error = self.last_error()?;
+        Ok((error.code != 0).then(|| error.sentence()))
+    }
+
     fn last_error(&mut self) -> Result<DeviceError, Trouble> {
         let code = self.ask(Parameter::Error)?.and_then(|answer| answer.first().copied());
         Ok(DeviceError { code: code.unwrap_or(0), detail: 0 })

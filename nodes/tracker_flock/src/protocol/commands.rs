@@ -9,6 +9,8 @@ use std::time::Duration;
 pub const POINT: u8 = b'B';
 /// Records until told otherwise.
 pub const STREAM: u8 = b'@';
+/// Lets output flow that a stray XOFF holds.
+pub const XON: u8 = 0x11;
 /// EXAMINE: ask for a parameter.
 pub const EXAMINE: u8 = b'O';
 /// CHANGE: set a parameter.
