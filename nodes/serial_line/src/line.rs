@@ -160,6 +160,13 @@ impl Line {
     }
 }
 
+impl Drop for Line {
+    fn drop(&mut self) {
+        // Where the other end stays open (a pseudo-terminal), the lock would outlive this and keep its own user out.
+        let _ = self.port.set_exclusive(false);
+    }
+}
+
 fn passing(kind: IoKind) -> bool {
     matches!(kind, IoKind::TimedOut | IoKind::Interrupted | IoKind::WouldBlock)
 }

@@ -27,7 +27,7 @@ pub struct Config {
     pub addressing: Addressing,
     /// What is sent: `position_matrix`, `position_angles` or `position_quaternion`.
     pub output: Format,
-    /// Full scale in inches: "36" or "72"; "144" with the extended range transmitter, which has no other.
+    /// Full scale in inches: 36 or 72; 144 with the extended range transmitter, which has no other.
     pub scale_inches: Scale,
     /// The half of space in which the sensor is when the node starts, seen from the transmitter.
     pub hemisphere: Hemisphere,

@@ -250,6 +250,17 @@ fn what_is_missing_in_the_flock_is_named() {
 }
 
 #[test]
+fn a_port_that_another_has_is_busy() {
+    let clock = HostClock::start();
+    let pty = plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, None, clock);
+    let mut rig = Rig::start(on(&pty), clock);
+    rig.poses(3);
+    let told = Rig::start(on(&pty), clock).trouble();
+    assert!(told.contains("in use by another program"), "{told}");
+    rig.poses(3);
+}
+
+#[test]
 fn a_file_is_no_serial_port() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let rig = Rig::start(Config { port: file.path().to_owned(), ..Config::default() }, HostClock::start());

@@ -159,6 +159,9 @@ fn settings_that_cannot_be_are_refused_with_their_name() {
     ] {
         assert_eq!(FlockTracker::new(config).unwrap_err().key, key);
     }
-    assert!(serde_json::from_str::<Config>(r#"{"scale_inches": "72", "output": "position_quaternion"}"#).is_ok());
+    assert!(serde_json::from_str::<Config>(r#"{"scale_inches": 72, "output": "position_quaternion"}"#).is_ok());
     assert!(serde_json::from_str::<Config>(r#"{"scale": 72}"#).is_err());
+    assert!(serde_json::from_str::<Config>(r#"{"scale_inches": 40}"#).unwrap_err().to_string().contains("36 or 72"));
+    let written = serde_json::to_string(&Config::default()).unwrap();
+    assert_eq!(serde_json::from_str::<Config>(&written).unwrap(), Config::default());
 }

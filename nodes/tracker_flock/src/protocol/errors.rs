@@ -51,7 +51,7 @@ impl DeviceError {
             20..=27 => "its processor trapped: switch it off and on; if it comes again the unit needs repair",
             28 => "there is no CRT synchronisation: none is asked for; set SYNC to 0",
             29 => "the transmitter cannot be reached: check that the unit that drives it is on and flies",
-            30 => "the extended range transmitter is not attached: plug it in, or say `extended_range = false`",
+            30 => "the extended range transmitter is not attached: plug it in, or say `scale_inches = 36`",
             31 => "its processor has no time left: lower `rate_hz` or the number of filters",
             32 => "the sensor is saturated: it is too near the transmitter or a source of magnetism",
             33 => "a unit has another configuration than the master: configure the flock anew",

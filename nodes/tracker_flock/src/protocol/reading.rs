@@ -14,28 +14,40 @@ const ROTATION_TOLERANCE: f64 = 0.01;
 
 /// How far full scale is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(try_from = "u8", into = "u8")]
 pub enum Scale {
     /// 36 inches.
     #[default]
-    #[serde(rename = "36")]
     Inches36,
     /// 72 inches.
-    #[serde(rename = "72")]
     Inches72,
     /// 144 inches: the extended range transmitter, which has no other.
-    #[serde(rename = "144")]
     Inches144,
+}
+
+impl From<Scale> for u8 {
+    fn from(scale: Scale) -> Self {
+        match scale {
+            Scale::Inches36 => 36,
+            Scale::Inches72 => 72,
+            Scale::Inches144 => 144,
+        }
+    }
+}
+
+impl TryFrom<u8> for Scale {
+    type Error = String;
+    fn try_from(inches: u8) -> Result<Self, String> {
+        let all = [Self::Inches36, Self::Inches72, Self::Inches144];
+        let found = all.into_iter().find(|scale| u8::from(*scale) == inches);
+        found.ok_or_else(|| format!("{inches} inches: 36 or 72, or 144 with the extended range transmitter"))
+    }
 }
 
 impl Scale {
     /// Full scale in metres.
     pub fn full_m(self) -> f64 {
-        INCH_M
-            * match self {
-                Self::Inches36 => 36.0,
-                Self::Inches72 => 72.0,
-                Self::Inches144 => 144.0,
-            }
+        INCH_M * f64::from(u8::from(self))
     }
 }
 
