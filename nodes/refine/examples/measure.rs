@@ -6,6 +6,7 @@
 #[path = "../tests/swept/mod.rs"]
 mod swept;
 
+use nalgebra::Vector3;
 use refine::{Config, Refiner};
 use std::time::Instant;
 use swept::{Spec, Sweep, measure};
@@ -15,8 +16,12 @@ fn main() {
     let name = arguments.get(1).map_or("W", String::as_str);
     let seed = arguments.get(2).map_or(1, |s| s.parse().unwrap());
     let seconds = arguments.get(3).map_or(60.0, |s| s.parse().unwrap());
-    let mut spec = Spec { seconds, ..Spec::named(name.trim_end_matches("-1way"), seed) };
-    spec.one_way = name.ends_with("-1way");
+    let (tracker, kind) = name.split_once('-').unwrap_or((name, ""));
+    let mut spec = Spec { seconds, one_way: kind == "1way", ..Spec::named(tracker, seed) };
+    if kind == "lifted" {
+        spec.pushed = Some((0.6 * seconds, Vector3::new(0.015, 0.01, 0.0)));
+    }
+    spec.pushed = (kind == "pushed").then(|| (0.6 * seconds, Vector3::new(4e-3, 2e-3, 0.0))).or(spec.pushed);
     let sweep = Sweep::new(&spec);
     let points: usize = sweep.profiles.iter().map(|p| p.points.len()).sum();
     println!("{name} seed {seed}: {} frames, {points} points, {} poses", sweep.profiles.len(), sweep.poses.len());

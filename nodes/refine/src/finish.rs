@@ -8,7 +8,7 @@ use crate::notices::{holds_little, missing_stroke, notice_moved, notice_solution
 use crate::outcome::outcome;
 use crate::refinement::Refinement;
 use crate::scene::{Placed, Problem};
-use crate::schedule::{STAGES, judging, wide};
+use crate::schedule::{judging, wide};
 use crate::solver::{self, Noise, Solution};
 use crate::step::look;
 use crate::testimony::{globals, refused, tracker};

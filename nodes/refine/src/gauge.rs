@@ -14,7 +14,7 @@ pub(crate) fn rigid(from: &[Point3<f64>], to: &[Point3<f64>]) -> Isometry3<f64> 
             |(p, q): (&Point3<f64>, &Point3<f64>)| 1.0 / (1.0 + (motion * p - q).norm_squared() / SCALE_M.powi(2));
         let weights: Vec<f64> = from.iter().zip(to).map(weight).collect();
         let total: f64 = weights.iter().sum();
-        if !(total > 0.0) {
+        if total.is_nan() || total <= 0.0 {
             return Isometry3::identity();
         }
         let mean = |points: &[Point3<f64>]| -> Vector3<f64> {

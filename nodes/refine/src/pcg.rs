@@ -20,7 +20,7 @@ pub(crate) fn solve(
         }
         let moved = product(&direction);
         let curvature = dot(&direction, &moved);
-        if !(curvature > 0.0) {
+        if curvature.is_nan() || curvature <= 0.0 {
             break;
         }
         let step = energy / curvature;

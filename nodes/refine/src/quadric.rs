@@ -126,8 +126,6 @@ pub(crate) struct Plane {
     pub second: f32,
     /// Thickness against the middle direction.
     pub flatness: f32,
-    /// Of the middle of the points.
-    pub mean: Vector3<f32>,
 }
 
 /// Principal directions of the points.
@@ -146,6 +144,5 @@ pub(crate) fn plane(points: impl Iterator<Item = (Vector3<f32>, f32)> + Clone) -
         normal: eigen.eigenvectors.column(order[0]).into(),
         second: middle,
         flatness: least / middle.max(f32::MIN_POSITIVE),
-        mean,
     }
 }

@@ -23,9 +23,7 @@ pub(crate) struct FrameData {
 fn eliminate(members: &[Member], values: &mut [f32]) {
     let mut taken = [0f32; 8];
     for (member, value) in members.iter().zip(values.iter()) {
-        for k in 0..8 {
-            taken[k] += member.terms[k] * value;
-        }
+        taken.iter_mut().zip(member.terms).for_each(|(taken, term)| *taken += term * value);
     }
     for (member, value) in members.iter().zip(values.iter_mut()) {
         *value -= dot(&member.terms, &taken);

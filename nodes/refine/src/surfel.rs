@@ -159,7 +159,7 @@ fn surfel(
     let points = near.iter().map(|&i| &cloud.points[i as usize]);
     let weighted = points.clone().map(|p| (p.position - centre, of_distance(p)));
     let tangent = plane(weighted);
-    if !(tangent.second >= LINE * square) {
+    if tangent.second.is_nan() || tangent.second < LINE * square {
         return;
     }
     let viewer: Vector3<f32> = points.clone().map(|p| p.to_sensor).sum::<Vector3<f32>>().normalize();

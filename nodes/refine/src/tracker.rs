@@ -44,11 +44,6 @@ impl Smoothed {
         }
     }
 
-    /// What the white noise leaves at a moment: metres and radians, one axis.
-    pub fn sigma(&self, stamp_nanos: i64) -> (f64, f64) {
-        self.way.sigma(stamp_nanos).unwrap_or((f64::INFINITY, f64::INFINITY))
-    }
-
     /// The white noise of a reading, one axis: metres and radians.
     pub fn white(&self) -> [f64; 2] {
         [self.way.position_sigma_m(), self.way.rotation_sigma_rad()].map(|axes| (axes.norm_squared() / 3.0).sqrt())

@@ -4,7 +4,7 @@
 //! they stand apart, and they stand farthest apart when the scan is divided just there.
 
 use crate::scene::Problem;
-use crate::surfel::Patch;
+use crate::surfel::{Member, Patch};
 
 /// The scan, divided at its most suspicious moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ pub(crate) struct Divided {
 }
 
 const STEP_S: f64 = 0.5;
-const FEWEST_MEMBERS: usize = 3;
+const FEWEST_MEMBERS: usize = 5;
 const FEWEST_SURFELS: usize = 30;
 const UPPER: f64 = 0.9;
 
@@ -30,14 +30,13 @@ pub(crate) fn divide(problem: &Problem, patches: &[Patch]) -> Option<Divided> {
     let moments = (1..(end_s / STEP_S) as usize).map(|i| i as f64 * STEP_S);
     let mut tried: Vec<(f64, f64, usize)> = moments
         .filter_map(|t_s| {
-            let mut apart: Vec<f64> =
+            let apart: Vec<f64> =
                 patches.iter().flat_map(Patch::surfels).filter_map(|members| offset(problem, members, t_s)).collect();
             let surfels = apart.len();
             if surfels < FEWEST_SURFELS {
                 return None;
             }
-            let place = ((surfels - 1) as f64 * UPPER) as usize;
-            Some((t_s, *apart.select_nth_unstable_by(place, f64::total_cmp).1, surfels))
+            Some((t_s, apart.iter().sum::<f64>() / surfels as f64, surfels))
         })
         .collect();
     let most = tried.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a })?;
@@ -46,13 +45,18 @@ pub(crate) fn divide(problem: &Problem, patches: &[Patch]) -> Option<Divided> {
     Some(Divided { t_s: most.0, apart_m: most.1, usual_m, surfels: most.2 })
 }
 
-fn offset(problem: &Problem, members: &[crate::surfel::Member], t_s: f64) -> Option<f64> {
-    let mut sides = [(0.0, 0usize); 2];
+/// Between the medians of both sides, because outliers lie far.
+fn offset(problem: &Problem, members: &[Member], t_s: f64) -> Option<f64> {
+    let mut sides: [Vec<f32>; 2] = Default::default();
     for member in members {
-        let side = &mut sides[usize::from(problem.frames[member.frame as usize].t_s > t_s)];
-        side.0 += f64::from(member.distance_m);
-        side.1 += 1;
+        sides[usize::from(problem.frames[member.frame as usize].t_s > t_s)].push(member.distance_m);
     }
-    let [(a, n), (b, m)] = sides;
-    (n.min(m) >= FEWEST_MEMBERS).then(|| (a / n as f64 - b / m as f64).abs())
+    if sides.iter().any(|side| side.len() < FEWEST_MEMBERS) {
+        return None;
+    }
+    let [a, b] = sides.map(|mut side| {
+        let middle = side.len() / 2;
+        f64::from(*side.select_nth_unstable_by(middle, f32::total_cmp).1)
+    });
+    Some((a - b).abs())
 }

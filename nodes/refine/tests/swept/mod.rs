@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "each user needs its own part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use geometry::{Camera, MeshIndex, Rig, SmoothTrajectory, Smoothing, TimedPose, rigid_from_wire, rigid_to_wire};
+use geometry::{Camera, MeshIndex, Rig, SmoothTrajectory, Smoothing, TimedPose, TriangleMesh, rigid_from_wire, rigid_to_wire};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use refine::{Config, Refiner};
@@ -32,7 +32,7 @@ pub struct Spec {
     /// All strokes of one direction.
     pub one_way: bool,
     pub scene: &'static str,
-    /// At this moment the thing is pushed by so much.
+    /// At this moment the thing, but not the table, is pushed by so much.
     pub pushed: Option<(f64, Vector3<f64>)>,
 }
 
@@ -135,24 +135,30 @@ impl Sweep {
         let tracker = Tracker::new(&rig, hand.clone(), spec.seed).unwrap();
         let poses: Vec<Pose> = (0..tracker.count()).into_par_iter().filter_map(|i| tracker.sample(i)).collect();
         let thing = scene.subject().mesh.clone();
-        let mut whole = thing.clone();
-        for (i, surface) in scene.surfaces.iter().enumerate().filter(|(i, _)| *i != scene.subject) {
-            let _ = i;
-            whole.append(&surface.mesh);
-        }
-        let truth = MeshIndex::new(&whole).unwrap();
+        let scene_with = |thing: &TriangleMesh| {
+            let mut whole = thing.clone();
+            let others = scene.surfaces.iter().enumerate().filter(|(i, _)| *i != scene.subject);
+            others.for_each(|(_, surface)| whole.append(&surface.mesh));
+            MeshIndex::new(&whole).unwrap()
+        };
+        let truth = scene_with(&thing);
+        let afterwards = spec.pushed.map(|(_, by)| {
+            let vertices = thing.vertices.iter().map(|p| p + by.cast::<f32>()).collect();
+            scene_with(&TriangleMesh { vertices, ..thing.clone() })
+        });
         let eye = Eye::new(&rig, spec);
         let frames = (spec.seconds * spec.rate_hz) as u64;
         let lit = (0..frames).filter(|k| k % 6 != 0).filter(|k| {
             let t_s = (*k as f64 + 0.5) / spec.rate_hz;
-            hand.phase(t_s) != Phase::Aim && (!spec.one_way || upright(&hand, &rig, t_s))
+            hand.phase(t_s) != Phase::Aim && (!spec.one_way || one_way(&hand, &rig, t_s))
         });
         let lit: Vec<u64> = lit.collect();
         let seen: Vec<(Profile, Vec<bool>)> = lit
             .into_par_iter()
             .map(|k| {
                 let t_s = (k as f64 + 0.5) / spec.rate_hz;
-                eye.profile(&truth, thing.triangles.len() as u32, &hand.world_from_camera(t_s), t_s, k)
+                let pushed = afterwards.as_ref().filter(|_| spec.pushed.is_some_and(|(from, _)| t_s > from));
+                eye.profile(pushed.unwrap_or(&truth), &hand.world_from_camera(t_s), t_s, k)
             })
             .collect();
         let (profiles, wild) = seen.into_iter().unzip();
@@ -212,11 +218,12 @@ impl Sweep {
     }
 }
 
-/// True while the stripe stands upright on the thing: those strokes alone go around it.
-fn upright(hand: &Hand, rig: &Rig, t_s: f64) -> bool {
-    let sheet = rig.sheet().unwrap();
-    let along = sheet.normal.cross(&Vector3::z()).normalize();
-    (hand.world_from_camera(t_s).rotation * along).z.abs() > 0.8
+/// True while the thing is seen from one side with the stripe upright.
+fn one_way(hand: &Hand, rig: &Rig, t_s: f64) -> bool {
+    let along = rig.sheet().unwrap().normal.cross(&Vector3::z()).normalize();
+    let way = hand.world_from_camera(t_s);
+    let [x, y] = [way.translation.x, way.translation.y];
+    (way.rotation * along).z.abs() > 0.8 && x > 0.0 && y.abs() < 0.5 * x
 }
 
 struct Eye {
@@ -244,14 +251,10 @@ impl Eye {
         Self { camera: rig.camera, source, axes: [down, along], spec: spec.clone() }
     }
 
-    fn profile(&self, truth: &MeshIndex, thing: u32, way: &Isometry3<f64>, t_s: f64, k: u64) -> (Profile, Vec<bool>) {
+    fn profile(&self, truth: &MeshIndex, way: &Isometry3<f64>, t_s: f64, k: u64) -> (Profile, Vec<bool>) {
         let spec = &self.spec;
         let mut random = Random(spec.seed.wrapping_mul(0x9e37_79b9).wrapping_add(k << 20));
         let (mut points, mut wild) = (Vec::new(), Vec::new());
-        let pushed = spec.pushed.filter(|(from, _)| t_s > *from).map_or(Vector3::zeros(), |(_, by)| by);
-        // What is pushed is seen as if the handset had moved the other way.
-        let way = Translation3::from(-pushed) * way;
-        let _ = thing;
         for ray in 0..spec.rays {
             let at = REACH * (2.0 * (ray as f64 + random.uniform()) / spec.rays as f64 - 1.0);
             let direction = (self.axes[0] + self.axes[1] * at).normalize();

@@ -1,0 +1,176 @@
+//! What cannot be reached from outside: derivatives and the eliminated system.
+
+use crate::banded::Banded;
+use crate::gather::Gathered;
+use crate::random::uniform;
+use crate::scene::{Problem, right_jacobian};
+use crate::schur::{Room, frame_data, product};
+use crate::spline::Knots;
+use crate::surfel::{Member, Patch};
+use crate::tracker::Smoothed;
+use crate::unknowns::Unknowns;
+use geometry::{Smoothing, TimedPose};
+use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
+
+/// Four seconds of a hand that moves and turns, without noise.
+fn gathered() -> Gathered {
+    let mut gathered = Gathered::default();
+    for i in 0..400i64 {
+        let t = i as f64 * 0.01;
+        let turn = UnitQuaternion::new(Vector3::new((2.0 * t).sin(), 0.5 * t, (3.0 * t).cos()));
+        let pose = Isometry3::from_parts(Translation3::new(0.1 * t.sin(), 0.05 * t, 0.3), turn);
+        let stamp_nanos = i * 10_000_000;
+        gathered.readings.push(TimedPose { stamp_nanos, pose, position_sigma_m: 1e-3, rotation_sigma_rad: 1e-2 });
+        gathered.rotation_stamps.push(stamp_nanos);
+    }
+    gathered
+}
+
+fn body_from_camera() -> Isometry3<f64> {
+    let turn = UnitQuaternion::new(Vector3::new(0.3, -0.2, 1.0));
+    Isometry3::from_parts(Translation3::new(0.05, -0.03, 0.02), turn)
+}
+
+#[test]
+fn the_derivative_of_a_point_by_its_correction_is_exact_far_from_zero_as_well() {
+    let gathered = gathered();
+    let smoothed = Smoothed::new(&gathered, &Smoothing::default()).unwrap();
+    let unknowns = Unknowns { fine: Knots::over(0.0, 4.0, 0.033), coarse: Knots::over(0.0, 4.0, 0.4) };
+    let problem = Problem {
+        gathered: &gathered,
+        smoothed: &smoothed,
+        body_from_camera: body_from_camera(),
+        frames: &[],
+        unknowns,
+        origin: Vector3::zeros(),
+    };
+    let (base, twist) = smoothed.base(2_000_000_000, 0.0);
+    let row = unknowns.row(2.0, base, twist, &problem.origin);
+    let correction = Vector6::new(3e-3, -2e-3, 1e-3, 0.1, -0.15, 0.2);
+    let normal = Vector3::new(0.3f32, -0.5, 0.8).normalize();
+    let point = [0.02f32, -0.03, 0.21];
+    let q = problem.in_body(&point);
+    let at = |correction: &Vector6<f64>| row.corrected(correction) * nalgebra::Point3::from(q);
+    let jacobian = problem.pose(&row, &correction).jacobian(&normal, &q.cast());
+    for axis in 0..6 {
+        const STEP: f64 = 1e-6;
+        let mut moved = [correction; 2];
+        moved[0][axis] -= STEP;
+        moved[1][axis] += STEP;
+        let numeric = (at(&moved[1]) - at(&moved[0])).dot(&normal.cast::<f64>()) / (2.0 * STEP);
+        assert!((numeric - f64::from(jacobian[axis])).abs() < 1e-6, "{axis}: {numeric} {}", jacobian[axis]);
+    }
+}
+
+#[test]
+fn the_derivative_by_the_clock_is_the_twist() {
+    let gathered = gathered();
+    let smoothed = Smoothed::new(&gathered, &Smoothing::default()).unwrap();
+    const STEP_S: f64 = 1e-4;
+    let (before, twist) = smoothed.base(2_000_000_000, -STEP_S);
+    let (after, _) = smoothed.base(2_000_000_000, STEP_S);
+    let moved = before.inv_mul(&after);
+    assert!((moved.translation.vector / (2.0 * STEP_S) - twist.fixed_rows::<3>(0)).norm() < 1e-4);
+    assert!((moved.rotation.scaled_axis() / (2.0 * STEP_S) - twist.fixed_rows::<3>(3)).norm() < 1e-3);
+}
+
+#[test]
+fn the_right_jacobian_turns_a_small_step_into_a_product() {
+    let (turn, step) = (Vector3::new(0.4, -0.3, 0.7), Vector3::new(1e-5, 2e-5, -1e-5));
+    let exact = (UnitQuaternion::new(turn).inverse() * UnitQuaternion::new(turn + step)).scaled_axis();
+    assert!((exact - right_jacobian(&turn) * step).norm() < 1e-9);
+    assert!((right_jacobian(&Vector3::new(1e-9, 0.0, 0.0)) - nalgebra::Matrix3::identity()).norm() < 1e-8);
+}
+
+/// Surfels of one plane z = 0: members at random places of random frames.
+fn plane_patches(frames: u32) -> Vec<Patch> {
+    let random = |i: u64| uniform(7, i) - 0.5;
+    let mut patches = vec![Patch::default(); 2];
+    for surfel in 0..20u64 {
+        let members: Vec<Member> = (0..16u64)
+            .map(|k| {
+                let i = 100 * surfel + 4 * k;
+                let (u, v) = (random(i) as f32, random(i + 1) as f32);
+                let frame = ((random(i + 2) + 0.5) * f64::from(frames)) as u32;
+                let place = Vector3::new(0.1 * u + 0.01 * surfel as f32, 0.1 * v, 0.0);
+                let turn = place.cross(&Vector3::z());
+                let jacobian = [0.0, 0.0, 1.0, turn.x, turn.y, turn.z, 0.0, 0.0];
+                let terms = [1.0, u, v, u * u, u * v, v * v, 0.0, 0.0];
+                Member { jacobian, terms, frame, residual: random(i + 3) as f32, distance_m: 0.0, root_weight: 1.0 }
+            })
+            .collect();
+        let patch = &mut patches[(surfel % 2) as usize];
+        patch.members.extend(whitened(members));
+        patch.ends.push(patch.members.len() as u32);
+    }
+    patches
+}
+
+fn whitened(mut members: Vec<Member>) -> Vec<Member> {
+    let terms = |member: &Member| Vector6::from_fn(|i, _| f64::from(member.terms[i]));
+    let normal = members.iter().fold(Matrix6::identity() * 1e-9, |sum, m| sum + terms(m) * terms(m).transpose());
+    let factor = nalgebra::Cholesky::new(normal).unwrap().l();
+    for member in &mut members {
+        let white = factor.solve_lower_triangular(&terms(member)).unwrap();
+        (0..6).for_each(|i| member.terms[i] = white[i] as f32);
+    }
+    members
+}
+
+#[test]
+fn the_eliminated_system_is_symmetric_and_has_no_negative_direction() {
+    const FRAMES: usize = 9;
+    let patches = plane_patches(FRAMES as u32);
+    let mut room = Room::new(&patches, FRAMES);
+    let vector = |seed: u64| -> Vec<Vector6<f64>> {
+        (0..FRAMES).map(|k| Vector6::from_fn(|i, _| uniform(seed, (6 * k + i) as u64) - 0.5)).collect()
+    };
+    let dot = |a: &[Vector6<f64>], b: &[Vector6<f64>]| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>();
+    for seed in 0..20 {
+        let (a, b) = (vector(2 * seed), vector(2 * seed + 1));
+        let (ha, hb) = (product(&patches, 1.0, &a, &mut room), product(&patches, 1.0, &b, &mut room));
+        assert!((dot(&a, &hb) - dot(&b, &ha)).abs() < 1e-4 * dot(&a, &ha).abs());
+        assert!(dot(&a, &ha) >= 0.0);
+    }
+}
+
+#[test]
+fn what_moves_all_frames_as_one_piece_costs_nothing() {
+    const FRAMES: usize = 9;
+    let patches = plane_patches(FRAMES as u32);
+    let mut room = Room::new(&patches, FRAMES);
+    // All frames rise and tilt together: each surfel takes it up.
+    let rigid = vec![Vector6::new(0.3, -0.2, 0.5, 0.4, -0.6, 0.1); FRAMES];
+    let force = product(&patches, 1.0, &rigid, &mut room);
+    let alone: Vec<_> = (0..FRAMES).map(|k| if k == 0 { rigid[0] } else { Vector6::zeros() }).collect();
+    let usual = product(&patches, 1.0, &alone, &mut room)[0].norm();
+    assert!(force.iter().all(|f| f.norm() < 1e-4 * usual), "{force:?} {usual}");
+    assert!(frame_data(&patches, 1.0, FRAMES).iter().map(|frame| frame.members).sum::<u32>() == 320);
+}
+
+#[test]
+fn a_banded_matrix_is_solved_and_inverted_as_a_full_one() {
+    const SIZE: usize = 40;
+    let mut band = Banded::zeros(SIZE, 5);
+    let mut full = nalgebra::DMatrix::<f64>::zeros(SIZE, SIZE);
+    for row in 0..SIZE {
+        for column in row.saturating_sub(5)..=row {
+            let value = if row == column { 8.0 } else { uniform(3, (row * SIZE + column) as u64) };
+            band.add(row, column, value);
+            full[(row, column)] = value;
+            full[(column, row)] = value;
+        }
+    }
+    let inverse = full.clone().try_inverse().unwrap();
+    let right = nalgebra::DVector::from_fn(SIZE, |i, _| uniform(4, i as u64));
+    let factor = band.factor();
+    let mut x = right.as_slice().to_vec();
+    factor.solve(&mut x);
+    assert!((&inverse * right - nalgebra::DVector::from_vec(x)).norm() < 1e-10);
+    let part = factor.inverse_band();
+    for row in 0..SIZE {
+        for column in row.saturating_sub(5)..=row {
+            assert!((part.at(row, column) - inverse[(row, column)]).abs() < 1e-10, "{row} {column}");
+        }
+    }
+}
