@@ -59,13 +59,16 @@ fn calibration_first_then_by_time_then_the_ends() {
         ('f', 0),
         ('p', 0),
         ('f', 20),
+        ('c', 20),
         ('p', 20),
         ('f', 40),
         ('p', 40),
         ('f', 60),
+        ('c', 60),
         ('p', 60),
         ('p', 60),
         ('f', 60),
+        ('c', 60),
     ];
     assert_eq!(order, expected);
     assert_eq!(messages[0].decode::<Calibration>().unwrap().pose_offset_nanos, 15_000_000);
@@ -75,7 +78,7 @@ fn calibration_first_then_by_time_then_the_ends() {
     assert!(told.light.lamp && told.data.is_empty());
     assert_eq!((colour.light.lamp, colour.data[0], colour.header.seq), (true, 1, 1));
     assert_eq!(messages[2].decode::<Pose>().unwrap().header.phase, Phase::Both);
-    let ends = &messages[9..];
+    let ends = &messages[11..];
     assert!(ends[0].decode::<Pose>().unwrap().header.is_end() && ends[1].decode::<Frame>().unwrap().header.is_end());
     assert_eq!(ends[1].decode::<Frame>().unwrap().header.seq, 4);
 }
@@ -87,7 +90,7 @@ fn a_bad_picture_is_an_error_in_its_place() {
     std::fs::write(folder.path().join("frames/000002.png"), "no picture").unwrap();
     let source = Source::open(folder.path()).unwrap();
     let (good, bad): (Vec<_>, Vec<_>) = source.messages().unwrap().partition(Result::is_ok);
-    assert_eq!((good.len(), bad.len()), (10, 1));
+    assert_eq!((good.len(), bad.len()), (13, 1));
     assert!(matches!(bad[0], Err(ReplayError::Folder(_))));
 }
 
