@@ -18,18 +18,17 @@ fn main() {
     let seconds = arguments.get(3).map_or(60.0, |s| s.parse().unwrap());
     let (tracker, kind) = name.split_once('-').unwrap_or((name, ""));
     let mut spec = Spec { seconds, one_way: kind == "1way", ..Spec::named(tracker, seed) };
-    if kind == "lifted" {
-        spec.pushed = Some((0.6 * seconds, Vector3::new(0.015, 0.01, 0.0)));
-    }
-    spec.pushed = (kind == "pushed").then(|| (0.6 * seconds, Vector3::new(4e-3, 2e-3, 0.0))).or(spec.pushed);
+    spec.pushed = (kind == "pushed").then(|| (0.6 * seconds, Vector3::new(15e-3, 10e-3, 0.0)));
     let sweep = Sweep::new(&spec);
     let points: usize = sweep.profiles.iter().map(|p| p.points.len()).sum();
     println!("{name} seed {seed}: {} frames, {points} points, {} poses", sweep.profiles.len(), sweep.poses.len());
     println!("  smoothed  {}", measure::fit(&sweep, &sweep.smoothed()));
+    // Settings as JSON, for trying others.
+    let config = std::env::var("CONFIG").map_or(Config::default(), |json| serde_json::from_str(&json).unwrap());
     if std::env::var("LIVE").is_ok() {
-        return live(&sweep);
+        return live(&sweep, config);
     }
-    let refiner = sweep.refiner(Config::default());
+    let refiner = sweep.refiner(config);
     let start = Instant::now();
     let refined = refiner.finish().unwrap();
     let took = start.elapsed();
@@ -65,8 +64,8 @@ fn main() {
 }
 
 /// A tick each second, as it would go while the scan is on.
-fn live(sweep: &Sweep) {
-    let mut refiner = Refiner::new(Config::default(), &sweep.calibration).unwrap();
+fn live(sweep: &Sweep, config: Config) {
+    let mut refiner = Refiner::new(config, &sweep.calibration).unwrap();
     let (mut poses, mut profiles) = (sweep.poses.iter().peekable(), sweep.profiles.iter().peekable());
     for second in 1..=sweep.seconds as i64 {
         let until = second * 1_000_000_000;

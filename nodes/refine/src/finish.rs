@@ -54,7 +54,7 @@ pub(crate) fn finish(
     let after = judge(&problem, &poses, &judging(config.seed));
     notice_solution(&solution, &mut notices);
     let wide_after = look(&problem, &poses, &wide(config.seed));
-    notice_moved(&problem, &wide_after.patches, &mut notices);
+    notice_moved(&problem, &wide_after, &mut notices);
     let held = strokes::hold(&wide_after.patches);
     if held.directions < 6 {
         notices.push(holds_little(held));

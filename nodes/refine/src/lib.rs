@@ -98,6 +98,8 @@ mod step;
 mod surfel;
 mod testimony;
 mod tracker;
+#[cfg(feature = "node")]
+mod tell;
 mod unknowns;
 #[cfg(feature = "node")]
 mod worker;

@@ -5,12 +5,12 @@ use crate::guard::moved;
 use crate::guard::strokes::{Hold, Strokes};
 use crate::scene::Problem;
 use crate::solver::Solution;
-use crate::surfel::Patch;
+use crate::step::Seen;
 
-/// Parts of a thing that was moved stand apart by so much more than usual ...
-const APART: f64 = 3.0;
+/// Parts of a thing that was moved stand apart by so many times the residuals (noise alone: 2) ...
+const APART: f64 = 4.0;
 /// ... and by this much at least.
-const LEAST_APART_M: f64 = 1e-3;
+const LEAST_APART_M: f64 = 3e-4;
 
 /// What the schedule met.
 pub(crate) fn notice_solution(solution: &Solution, notices: &mut Vec<Notice>) {
@@ -23,9 +23,9 @@ pub(crate) fn notice_solution(solution: &Solution, notices: &mut Vec<Notice>) {
 }
 
 /// Whether the thing was moved.
-pub(crate) fn notice_moved(problem: &Problem, patches: &[Patch], notices: &mut Vec<Notice>) {
-    let Some(divided) = moved::divide(problem, patches) else { return };
-    if divided.apart_m > LEAST_APART_M && divided.apart_m > APART * divided.usual_m {
+pub(crate) fn notice_moved(problem: &Problem, seen: &Seen, notices: &mut Vec<Notice>) {
+    let Some(divided) = moved::divide(problem, &seen.patches) else { return };
+    if divided.apart_m > LEAST_APART_M.max(APART * seen.sigma_m) {
         let stamp_nanos = problem.start_nanos() + (divided.t_s * 1e9) as i64;
         notices.insert(0, Notice::ThingMoved { stamp_nanos, apart_mm: divided.apart_m * 1e3 });
     }

@@ -19,6 +19,9 @@ pub(crate) struct FrameData {
     pub members: u32,
 }
 
+/// Fewer frames are not worth a thread: where others work as well, each hand-over may cost a time slice.
+pub(crate) const FRAMES_A_TASK: usize = 2048;
+
 /// v minus its part that the surfel's parameters take up.
 fn eliminate(members: &[Member], values: &mut [f32]) {
     let mut taken = [0f32; 8];
@@ -88,7 +91,7 @@ pub(crate) fn product(
         room.sums.iter().for_each(|sums| (0..6).for_each(|i| total[i] += sums[k][i]));
         total * weight
     };
-    (0..corrections.len()).into_par_iter().with_min_len(256).map(total).collect()
+    (0..corrections.len()).into_par_iter().with_min_len(FRAMES_A_TASK).map(total).collect()
 }
 
 /// Right side and diagonal blocks, times `weight`.
@@ -128,7 +131,7 @@ pub(crate) fn frame_data(patches: &[Patch], weight: f64, frames: usize) -> Vec<F
         sum.hessian.fill_upper_triangle_with_lower_triangle();
         FrameData { hessian: sum.hessian * weight, force: sum.force * weight, ..sum }
     };
-    (0..frames).into_par_iter().with_min_len(256).map(total).collect()
+    (0..frames).into_par_iter().with_min_len(FRAMES_A_TASK).map(total).collect()
 }
 
 /// The root mean square of a robust part of the residuals: 1.4826 times their median size, in metres.

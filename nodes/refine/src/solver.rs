@@ -61,18 +61,21 @@ pub(crate) fn prior(config: &Config, noise: &Noise, problem: &Problem) -> Prior 
     let white = problem.smoothed.white().map(|sigma| sigma.max(LEAST_WHITE));
     let stiffness = problem.smoothed.stiffness(config.knot_ms * 1e-3);
     let deg = f64::to_radians;
+    let slow = |most: [f64; 2]| [0, 1].map(|k| most[k].min(SLOW_PER_WHITE * white[k]));
     let beliefs = Beliefs {
         white,
         inflation: [noise.inflation; 2],
         smoothness: [0, 1].map(|k| config.smoothness * stiffness[k].max(LEAST_STIFFNESS) / white[k].powi(2)),
-        bias: [config.bias_position_mm * 1e-3, deg(config.bias_rotation_deg)],
-        field: [config.field_position_mm * 1e-3, deg(config.field_rotation_deg)],
+        bias: slow([config.bias_position_mm * 1e-3, deg(config.bias_rotation_deg)]),
+        field: slow([config.field_position_mm * 1e-3, deg(config.field_rotation_deg)]),
         hand_eye: [config.hand_eye_mm * 1e-3, deg(config.hand_eye_deg)],
         clock_s: config.clock_ms * 1e-3,
     };
     Prior::new(&problem.unknowns, &times, &beliefs)
 }
 
+/// A tracker's slow errors are no larger than so many times its noise: one that is quiet is a good one.
+const SLOW_PER_WHITE: f64 = 20.0;
 /// A perfect tracker would make the prior infinitely stiff.
 const LEAST_WHITE: f64 = 1e-7;
 const LEAST_STIFFNESS: f64 = 1e-3;

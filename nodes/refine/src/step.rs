@@ -5,7 +5,7 @@ use crate::pcg;
 use crate::precondition::Preconditioner;
 use crate::prior::Prior;
 use crate::scene::{FramePose, Problem};
-use crate::schur::{FrameData, Room, frame_data, product, robust_sigma_m};
+use crate::schur::{FRAMES_A_TASK, FrameData, Room, frame_data, product, robust_sigma_m};
 use crate::surfel::{Patch, SurfelPlan, build};
 use crate::unknowns::{Free, Row};
 use nalgebra::Vector6;
@@ -67,7 +67,7 @@ pub(crate) fn step(problem: &Problem, prior: &Prior, plan: &StepPlan, x: &mut [f
     let mut room = Room::new(&seen.patches, rows.len());
     let apply = |v: &[f64]| {
         let corrections: Vec<Vector6<f64>> =
-            rows.par_iter().with_min_len(256).map(|row| unknowns.correction(row, v, true)).collect();
+            rows.par_iter().with_min_len(FRAMES_A_TASK).map(|row| unknowns.correction(row, v, true)).collect();
         let forces = product(&seen.patches, seen.weight, &corrections, &mut room);
         let mut out = vec![0.0; v.len()];
         prior.add_product(unknowns, free, v, &mut out);

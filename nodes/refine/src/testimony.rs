@@ -1,5 +1,6 @@
 //! What the unknowns that all frames share came to, and how well they are known.
 
+use crate::Config;
 use crate::evidence::{ClockEvidence, HandEyeEvidence, RefusedInput, TrackerEvidence};
 use crate::gather::Gathered;
 use crate::pcg;
@@ -11,7 +12,6 @@ use crate::solver::Noise;
 use crate::step::Seen;
 use crate::tracker::Smoothed;
 use crate::unknowns::{Free, Row};
-use crate::Config;
 use nalgebra::Vector6;
 use rayon::prelude::*;
 

@@ -4,7 +4,9 @@
 #![allow(dead_code, reason = "each user needs its own part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-use geometry::{Camera, MeshIndex, Rig, SmoothTrajectory, Smoothing, TimedPose, TriangleMesh, rigid_from_wire, rigid_to_wire};
+use geometry::{
+    Camera, MeshIndex, Rig, SmoothTrajectory, Smoothing, TimedPose, TriangleMesh, rigid_from_wire, rigid_to_wire,
+};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use refine::{Config, Refiner};
