@@ -2,7 +2,7 @@
 
 use crate::running::{self, Running};
 use anyhow::Result;
-use bus::Bus;
+use bus::{Bus, BusConfig};
 use clap::Args;
 use std::io::Write as _;
 
@@ -23,7 +23,8 @@ impl WhichRig {
     /// Finds it and joins its bus.
     pub fn open(&self) -> Result<(Running, Bus)> {
         let rig = self.find()?;
-        let bus = Bus::open(&rig.bus)?;
+        // Somebody may stop it by Ctrl-Z.
+        let bus = Bus::open(&BusConfig { onlooker: true, ..rig.bus.clone() })?;
         Ok((rig, bus))
     }
 }

@@ -141,6 +141,7 @@ fn bus(settings: &Settings, rig: &Section<'_>) -> Result<bus::BusConfig> {
         tls,
         shared_memory: section.must("shared_memory", section.truth("shared_memory")?)?,
         connect_timeout_ms: section.must("connect_ms", section.count("connect_ms")?)?,
+        onlooker: false,
     };
     if let Err(error) = config.check() {
         let said = [section.origin("endpoint"), rig.origin("namespace")];

@@ -32,7 +32,7 @@ fn spec(plan: &Plan, node: &PlannedNode, bus: &BusConfig) -> kit::NodeSpec {
     kit::NodeSpec {
         kind: node.kind.clone(),
         instance: node.inputs.instance.clone(),
-        bus: bus.clone(),
+        bus: BusConfig { onlooker: !node.required && !node.paces, ..bus.clone() },
         pace: plan.run.pace,
         window_ms: plan.run.window_ms,
         consumers: if node.source { graph::consumers(&plan.nodes, node) } else { Vec::new() },

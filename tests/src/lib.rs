@@ -23,11 +23,35 @@ pub fn repository(path: &str) -> PathBuf {
     root.canonicalize().unwrap_or(root).join(path)
 }
 
-/// `limn demo` without a page, on a sweep that takes a few seconds: the coarse camera, the exact tracker.
+/// `limn demo` without a page, on a sweep that takes a few seconds.
 pub fn short_demo(out: &Path) -> Command {
     let mut demo = limn();
-    demo.args(["demo", "--headless", "--rig", "paper", "--seconds", "6", "--out"]).arg(out);
+    demo.args(["demo", "--headless", "--seconds", "6", "--rig"]).arg(quick_rig(out)).arg("--out").arg(out);
     demo
+}
+
+/// A handset that is simulated in no time and measures well: the paper's camera, the fine rig's tracker.
+///
+/// # Panics
+/// When the project's rigs cannot be read, or the folder cannot be written to.
+pub fn quick_rig(out: &Path) -> PathBuf {
+    let rig = |name: &str| -> anyhow::Result<toml::Table> {
+        Ok(std::fs::read_to_string(repository(&format!("config/rigs/{name}.toml")))?.parse()?)
+    };
+    let write = || -> anyhow::Result<PathBuf> {
+        let (mut quick, mut fine) = (rig("paper")?, rig("fine")?);
+        let tracker = fine["simulation"]["tracker"].clone();
+        quick["simulation"]["tracker"] = tracker;
+        quick.extend(fine.remove_entry("clock"));
+        std::fs::create_dir_all(out)?;
+        let path = out.join("quick.toml");
+        std::fs::write(&path, toml::to_string(&quick)?)?;
+        Ok(path)
+    };
+    match write() {
+        Ok(path) => path,
+        Err(error) => panic!("the rig of the tests: {error:#}"),
+    }
 }
 
 /// The same scan by `limn up`, which ends when it is done.
@@ -39,14 +63,8 @@ pub fn short_up(out: &Path) -> Command {
 }
 
 /// What makes a launch file that includes the demo's a short scan into a folder.
-///
-/// # Panics
-/// When the folder cannot be made.
 pub fn short_sets(up: &mut Command, out: &Path) {
-    if let Err(error) = std::fs::create_dir_all(out) {
-        panic!("{}: {error}", out.display());
-    }
-    let rig = repository("config/rigs/paper.toml");
+    let rig = quick_rig(out);
     let (export, record) = (format!("export.folder={out:?}"), format!("record.file={:?}", out.join("scan.mcap")));
     let rigs = ["rig.file", "camera.rig", "tracker.rig"].map(|key| format!("{key}={rig:?}"));
     let others = ["run.pace=fast", "nodes.view.enabled=false", "camera.seconds=6.0", "tracker.seconds=6.0"];

@@ -1,12 +1,13 @@
 //! A rig that runs as a user starts it: a process with its nodes below it, found as `limn top` finds it.
 
-use bus::{Bus, BusConfig, Presence};
+use bus::{Bus, BusConfig, Presence, Subscriber};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::PathBuf;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
-use wire::{Message, topic};
+use wire::{Header, Message, Progress, topic};
 
 /// Nothing here takes so long unless it hangs.
 pub const PATIENCE: Duration = Duration::from_secs(90);
@@ -151,23 +152,54 @@ impl Drop for Rig {
     }
 }
 
-/// Waits until a node (kind/instance) has finished everything up to a moment of the scan's own clock.
-///
-/// # Panics
-/// When it does not get there.
-pub fn wait_for_progress(bus: &Bus, node: &str, stamp_nanos: i64) {
-    let Ok(mut progress) = bus.subscribe(&topic::progress(node), 4096) else { panic!("no progress of {node}") };
-    let what = format!("{node} does not reach {} s", stamp_nanos as f64 * 1e-9);
-    wait_on(bus, &what, || progress.next().filter(|progress| progress.header.stamp_nanos >= stamp_nanos));
+/// How far each node has come, from now on.
+pub struct Course<'a> {
+    bus: &'a Bus,
+    progress: Subscriber<Progress>,
+    /// For each node (kind/instance), the numbers of the messages that it has finished.
+    pub finished: BTreeMap<String, Vec<u64>>,
+    reached: BTreeMap<String, Header>,
 }
 
-/// Waits until a node has done its work on a whole scan.
-///
-/// # Panics
-/// When it does not.
-pub fn wait_for_end(bus: &Bus, node: &str) {
-    let Ok(mut progress) = bus.subscribe(&topic::progress(node), 4096) else { panic!("no progress of {node}") };
-    wait_on(bus, &format!("{node} does not finish"), || progress.next().filter(|progress| progress.header.is_end()));
+impl<'a> Course<'a> {
+    /// Begins to listen.
+    ///
+    /// # Panics
+    /// When the bus is gone.
+    pub fn follow(bus: &'a Bus) -> Self {
+        match bus.subscribe(&topic::progress("**"), 1 << 16) {
+            Ok(progress) => Self { bus, progress, finished: BTreeMap::new(), reached: BTreeMap::new() },
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// Waits until a node has finished everything up to a moment of the scan's own clock.
+    ///
+    /// # Panics
+    /// When it does not get there.
+    pub fn wait_for(&mut self, node: &str, stamp_nanos: i64) {
+        let what = format!("{node} to reach {} s", stamp_nanos as f64 * 1e-9);
+        self.wait(node, &what, |header| header.stamp_nanos >= stamp_nanos);
+    }
+
+    /// Waits until a node has done its work on a whole scan.
+    ///
+    /// # Panics
+    /// When it does not.
+    pub fn wait_for_end(&mut self, node: &str) {
+        self.wait(node, &format!("{node} to finish"), Header::is_end);
+    }
+
+    fn wait(&mut self, node: &str, what: &str, there: impl Fn(&Header) -> bool) {
+        let bus = self.bus;
+        wait_on(bus, what, || {
+            while let Some(progress) = self.progress.next() {
+                self.finished.entry(progress.node.clone()).or_default().push(progress.finished_seq);
+                self.reached.insert(progress.node, progress.header);
+            }
+            self.reached.get(node).is_some_and(&there).then_some(())
+        });
+    }
 }
 
 /// Waits until a node is ready.

@@ -6,10 +6,9 @@
 
 use std::path::Path;
 use std::sync::OnceLock;
-use system_tests::rig::{Rig, signal, wait_for_progress, wait_on, wait_until};
+use system_tests::rig::{Course, Rig, signal, wait_until};
 use system_tests::{lost, report, same_bytes, short_demo, succeed};
 use tempfile::TempDir;
-use wire::topic;
 
 const FILES: [&str; 6] = ["cloud.ply", "mesh.ply", "mesh.stl", "model.glb", "model.obj", "model.png"];
 const SECOND: i64 = 1_000_000_000;
@@ -36,7 +35,7 @@ fn model_without(kind: &str, node: &str) {
     let folder = tempfile::tempdir().unwrap();
     let mut rig = Rig::start(&mut short_demo(folder.path()));
     let bus = rig.bus();
-    wait_for_progress(&bus, node, 3 * SECOND);
+    Course::follow(&bus).wait_for(node, 3 * SECOND);
     kill(&rig, kind);
     drop(bus);
     let (status, said) = rig.end();
@@ -76,19 +75,11 @@ fn pictures_on_their_way_to_a_dying_stripe_detector_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let mut rig = Rig::start(&mut short_demo(folder.path()));
     let bus = rig.bus();
-    let mut progress = bus.subscribe(&topic::progress("stripe/head"), 4096).unwrap();
-    let mut done = Vec::new();
-    wait_on(&bus, "no progress of stripe", || {
-        let message = progress.next()?;
-        done.push(message.finished_seq);
-        (message.header.stamp_nanos > 3 * SECOND).then_some(())
-    });
+    let mut course = Course::follow(&bus);
+    course.wait_for("stripe/head", 3 * SECOND);
     kill(&rig, "stripe");
-    wait_on(&bus, "the scan does not end", || {
-        let message = progress.next()?;
-        done.push(message.finished_seq);
-        message.header.is_end().then_some(())
-    });
+    course.wait_for_end("stripe/head");
+    let done = course.finished.remove("stripe/head").unwrap();
     drop(bus);
     let (status, said) = rig.end();
     let told = report(folder.path());

@@ -32,8 +32,8 @@ impl Harvest {
             return None;
         }
         let pictures = self.counts().frames;
-        let measures = |health: &Health| ["triangulate/", "register/"].iter().any(|kind| health.node.starts_with(kind));
-        let refused = self.accounts().filter(measures).flat_map(|health| health.refused);
+        let triangulated = self.accounts().filter(|health| health.node.starts_with("triangulate/"));
+        let refused = triangulated.flat_map(|health| health.refused);
         let reasons: Vec<String> = refused.map(|refusal| format!("{} x {}", refusal.count, refusal.reason)).collect();
         Some(match reasons.as_slice() {
             [] => format!(

@@ -2,6 +2,7 @@
 
 use crate::BusError;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU32, Ordering};
 use zenoh::Config;
 
 /// How to reach the router of a rig.
@@ -18,6 +19,9 @@ pub struct BusConfig {
     pub shared_memory: bool,
     /// How long a node waits for the router.
     pub connect_timeout_ms: u64,
+    /// Whoever only looks on: what it does not take in time is dropped. For all others the sender waits, and so would
+    /// the whole rig for a viewer that is stuck.
+    pub onlooker: bool,
 }
 
 /// Mutual TLS: both sides show a certificate of the same authority.
@@ -40,6 +44,7 @@ impl Default for BusConfig {
             tls: None,
             shared_memory: false,
             connect_timeout_ms: 10_000,
+            onlooker: false,
         }
     }
 }
@@ -72,6 +77,12 @@ impl BusConfig {
         self.check()?;
         let mut config = self.base("router")?;
         set(&mut config, "listen/endpoints", &format!("[{:?}]", self.locator()))?;
+        let onlookers: Vec<String> = (0..ONLOOKERS).map(|number| format!("{:?}", onlooker_id(number))).collect();
+        let drop_for_onlookers = format!(
+            "[{{ zids: [{}], messages: [\"put\"], flows: [\"egress\"], overwrite: {{ congestion_control: \"drop\" }} }}]",
+            onlookers.join(",")
+        );
+        set(&mut config, "qos/network", &drop_for_onlookers)?;
         Ok(config)
     }
 
@@ -81,6 +92,9 @@ impl BusConfig {
         let mut config = self.base("client")?;
         set(&mut config, "namespace", &format!("{:?}", self.namespace))?;
         set(&mut config, "connect/endpoints", &format!("[{:?}]", self.locator()))?;
+        if self.onlooker {
+            set(&mut config, "id", &format!("{:?}", onlooker_id(next_onlooker())))?;
+        }
         set(&mut config, "connect/timeout_ms", &self.connect_timeout_ms.to_string())?;
         Ok(config)
     }
@@ -101,6 +115,21 @@ impl BusConfig {
         }
         Ok(config)
     }
+}
+
+/// The router knows onlookers by their session's number; so many can look on at once.
+const ONLOOKERS: u32 = 1024;
+/// Onlookers in one process, before their numbers come again.
+const IN_ONE_PROCESS: u32 = 4;
+
+fn onlooker_id(number: u32) -> String {
+    format!("100c{number:04x}")
+}
+
+fn next_onlooker() -> u32 {
+    static OPENED: AtomicU32 = AtomicU32::new(0);
+    let in_process = OPENED.fetch_add(1, Ordering::Relaxed) % IN_ONE_PROCESS;
+    std::process::id().wrapping_mul(IN_ONE_PROCESS).wrapping_add(in_process) % ONLOOKERS
 }
 
 fn set(config: &mut Config, key: &str, json5: &str) -> Result<(), BusError> {

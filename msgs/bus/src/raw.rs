@@ -1,7 +1,7 @@
 //! Messages as bytes, for whoever keeps or shows all of them.
 
 use crate::ring::Ring;
-use crate::subscriber::{Line, listen};
+use crate::subscriber::{Line, Past, listen};
 use crate::{BusError, InputCounts, SequenceAccount, publisher};
 use wire::codec;
 use zenoh::qos::CongestionControl;
@@ -28,7 +28,7 @@ pub struct RawSubscriber {
 }
 
 pub(crate) fn declare(session: &Session, key_expression: &str, ring: Ring) -> Result<RawSubscriber, BusError> {
-    let line = listen(session, key_expression, true, &ring)?;
+    let line = listen(session, key_expression, Past::Kept, &ring)?;
     Ok(RawSubscriber { line, ring, account: SequenceAccount::default(), counts: InputCounts::default() })
 }
 

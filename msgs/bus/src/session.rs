@@ -14,6 +14,7 @@ use zenoh::{Session, Wait};
 #[derive(Clone)]
 pub struct Bus {
     session: Session,
+    onlooker: bool,
     bell: Arc<Bell>,
 }
 
@@ -26,7 +27,7 @@ impl Bus {
         let session = zenoh::open(config.client()?)
             .wait()
             .map_err(BusError::zenoh(format!("connecting to the router at {}", config.endpoint)))?;
-        Ok(Self { session, bell: Arc::default() })
+        Ok(Self { session, onlooker: config.onlooker, bell: Arc::default() })
     }
 
     /// A counted, versioned publisher.
@@ -36,7 +37,8 @@ impl Bus {
 
     /// The messages of a topic, of which the newest `depth` are held for this node.
     pub fn subscribe<M: Message>(&self, topic: &Topic<M>, depth: usize) -> Result<Subscriber<M>, BusError> {
-        subscriber::declare(&self.session, &topic.key, topic.class, Ring::new(depth, self.bell.clone()))
+        let subscriber = subscriber::declare(&self.session, topic, self.onlooker, Ring::new(depth, self.bell.clone()))?;
+        Ok(if self.onlooker { subscriber.glimpses() } else { subscriber })
     }
 
     /// Every message whose key matches, undecoded; what was latched or streamed before comes first.

@@ -3,26 +3,44 @@
 use crate::ring::Ring;
 use crate::{BusError, SequenceAccount};
 use std::marker::PhantomData;
-use wire::topic::Class;
+use std::time::Duration;
+use wire::topic::{Class, Topic};
 use wire::{Message, codec};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait, pubsub};
-use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig};
+use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
 
 pub(crate) enum Line {
     Plain(#[allow(dead_code, reason = "held for its drop")] pubsub::Subscriber<()>),
     WithHistory(#[allow(dead_code, reason = "held for its drop")] AdvancedSubscriber<()>),
 }
 
-pub(crate) fn listen(session: &Session, key: &str, history: bool, ring: &Ring) -> Result<Line, BusError> {
+/// What a line gets besides what is sent from now on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Past {
+    /// Nothing.
+    None,
+    /// What its publishers keep.
+    Kept,
+    /// That, and again what was dropped on the way.
+    Recovered,
+}
+
+/// How often one who looks on asks for what was dropped.
+const RECOVER_EVERY: Duration = Duration::from_secs(1);
+
+pub(crate) fn listen(session: &Session, key: &str, past: Past, ring: &Ring) -> Result<Line, BusError> {
     let (ring, depth) = (ring.clone(), ring.depth());
     let builder = session.declare_subscriber(key.to_owned()).callback(move |sample| ring.push(sample));
-    if history {
-        // More than the ring holds would only fall out of it.
-        let history = HistoryConfig::default().detect_late_publishers().max_samples(depth);
-        builder.history(history).wait().map(Line::WithHistory)
-    } else {
-        builder.wait().map(Line::Plain)
+    // More than the ring holds would only fall out of it.
+    let history = HistoryConfig::default().detect_late_publishers().max_samples(depth);
+    match past {
+        Past::None => builder.wait().map(Line::Plain),
+        Past::Kept => builder.history(history).wait().map(Line::WithHistory),
+        Past::Recovered => {
+            let recovery = RecoveryConfig::default().periodic_queries(RECOVER_EVERY);
+            builder.history(history).recovery(recovery).wait().map(Line::WithHistory)
+        }
     }
     .map_err(BusError::zenoh(format!("subscribing to {key}")))
 }
@@ -57,17 +75,24 @@ pub struct Subscriber<M> {
 
 pub(crate) fn declare<M: Message>(
     session: &Session,
-    key: &str,
-    class: Class,
+    topic: &Topic<M>,
+    onlooker: bool,
     ring: Ring,
 ) -> Result<Subscriber<M>, BusError> {
-    let history = matches!(class, Class::Gathered | Class::Stream | Class::Latched);
+    let past = match topic.class {
+        Class::Frame | Class::Trace => Past::None,
+        // Of a stream the newest alone is wanted: what was dropped is not missed.
+        Class::Stream if ring.depth() == 1 => Past::Kept,
+        Class::Stream | Class::Latched if onlooker => Past::Recovered,
+        Class::Gathered | Class::Stream | Class::Latched => Past::Kept,
+    };
     Ok(Subscriber {
-        line: listen(session, key, history, &ring)?,
+        line: listen(session, &topic.key, past, &ring)?,
         ring,
-        key: key.to_owned(),
+        key: topic.key.clone(),
         fresh_only: false,
-        counts_gaps: true,
+        // What is dropped first is no loss.
+        counts_gaps: topic.class != Class::Trace,
         account: SequenceAccount::default(),
         counts: InputCounts::default(),
         message: PhantomData,

@@ -35,8 +35,10 @@ impl Lines {
 /// Starts the log of this process; in a test, where there is one already, only the bus is left out.
 pub(crate) fn start(filter: &str) -> Lines {
     let lines = Lines::default();
-    // Zenoh tells its own story in great detail; its warnings are enough.
-    let filter = EnvFilter::try_new(format!("warn,zenoh=error,{filter}")).unwrap_or_else(|_| EnvFilter::new("info"));
+    // Zenoh tells its own story in great detail; its errors are enough. A session that closes calls each message that
+    // still comes an error.
+    let filter = EnvFilter::try_new(format!("warn,zenoh=error,zenoh::api::session=off,{filter}"))
+        .unwrap_or_else(|_| EnvFilter::new("info"));
     let stderr = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
