@@ -43,8 +43,8 @@ fn main() {
         e.residual.after_mm,
         e.frames_kept,
         e.dropped.len(),
-        e.observed.crossing,
-        e.observed.held_directions,
+        e.observed.unwrap().crossing,
+        e.observed.unwrap().held_directions,
         e.tracker.excess
     );
     let cover = measure::coverage(&sweep, &scans);

@@ -14,8 +14,8 @@ pub struct Evidence {
     pub clock: ClockEvidence,
     /// The camera on the handset.
     pub hand_eye: HandEyeEvidence,
-    /// What the scan could determine.
-    pub observed: Observed,
+    /// What the scan could determine; `None` in live revisions.
+    pub observed: Option<Observed>,
     /// What was noticed on the way, in the order of its weight.
     pub notices: Vec<Notice>,
     /// Frames that are given out.

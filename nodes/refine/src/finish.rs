@@ -3,8 +3,8 @@
 use crate::evidence::{Evidence, Notice, Observed, Residual};
 use crate::gather::Gathered;
 use crate::guard::strokes;
-use crate::judge::judge;
-use crate::notices::{holds_little, missing_stroke, notice_moved, notice_solution};
+use crate::judge::{Judgement, judge};
+use crate::notices::{missing_stroke, notice_solution, notice_surface};
 use crate::outcome::outcome;
 use crate::refinement::Refinement;
 use crate::scene::{Placed, Problem};
@@ -52,35 +52,24 @@ pub(crate) fn finish(
     let (problem, solution) = solve(config, free, gathered, &smoothed, &frames, body_from_camera, &mut notices);
     let poses = problem.poses(&solution.x);
     let after = judge(&problem, &poses, &judging(config.seed));
-    notice_solution(&solution, &mut notices);
     let wide_after = look(&problem, &poses, &wide(config.seed));
-    notice_moved(&problem, &wide_after, &mut notices);
     let held = strokes::hold(&wide_after.patches);
-    if held.directions < 6 {
-        notices.push(holds_little(held));
-    }
-    let better = after.sigma_m <= before.sigma_m;
-    if after.seen_twice < SEEN_TWICE {
-        notices.insert(0, Notice::NothingSeenTwice);
-    } else if !better {
-        notices.insert(0, Notice::KeptSmoothed);
-    }
-    let keep = better && after.seen_twice >= SEEN_TWICE;
+    notice_solution(&solution, &mut notices);
+    notice_surface(&problem, &wide_after, held, &mut notices);
+    let kept = keep_better(&before, &after, &mut notices);
     let (problem, x, judged, noise) =
-        if keep { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
+        if kept { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
     let prior = solver::prior(config, &noise, problem);
     let out = outcome(config, problem, &prior, judged, x);
-    let (clock, hand_eye) = globals(problem, &prior, &wide_after, free, x);
+    let (clock, hand_eye) = globals(problem, &prior, &wide_after, solution.free, x);
+    let observed =
+        Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: held.directions };
     let evidence = Evidence {
-        clock,
-        hand_eye,
         residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
         tracker: tracker(&smoothed, solution.excess, noise),
-        observed: Observed {
-            crossing: strokes.crossing,
-            stripes_along: strokes.along.into(),
-            held_directions: held.directions,
-        },
+        clock,
+        hand_eye,
+        observed: Some(observed),
         notices,
         frames_kept: out.frames.len(),
         dropped: out.dropped,
@@ -89,6 +78,19 @@ pub(crate) fn finish(
         frames: out.kept,
     };
     Ok(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })
+}
+
+/// Whether the refined way is given out: it must fit better, and something must have been seen twice.
+fn keep_better(before: &Judgement, after: &Judgement, notices: &mut Vec<Notice>) -> bool {
+    if after.seen_twice < SEEN_TWICE {
+        notices.insert(0, Notice::NothingSeenTwice);
+        return false;
+    }
+    let better = after.sigma_m <= before.sigma_m;
+    if !better {
+        notices.insert(0, Notice::KeptSmoothed);
+    }
+    better
 }
 
 /// The schedule; once more with the hand-eye transform held when it ran away.

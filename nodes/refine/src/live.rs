@@ -4,16 +4,17 @@
 //! found by the tick before is where the next begins; new time begins at the smoothed tracker. Points and surfels are
 //! bounded, so that a tick's time hardly grows with the scan.
 
-use crate::evidence::{Evidence, Notice, Observed, Residual};
+use crate::evidence::{Evidence, Notice, Residual};
 use crate::gather::Gathered;
-use crate::guard::strokes;
 use crate::judge::judge;
 use crate::outcome::outcome;
+use crate::prior::Prior;
 use crate::refinement::Refinement;
+use crate::scene::Problem;
 use crate::schedule::{LIVE, judging_live};
 use crate::solver::{self, Noise};
 use crate::spline::Knots;
-use crate::step::{look, step};
+use crate::step::step;
 use crate::testimony::{clock, hand_eye_held, refused, tracker};
 use crate::tracker::Smoothed;
 use crate::unknowns::{Free, GLOBALS, Unknowns};
@@ -60,30 +61,14 @@ pub(crate) fn tick(
     let prior = solver::prior(config, &noise, &problem);
     let late = frames.last()?.t_s > GLOBALS_S;
     let free = Free { fine: true, bias: true, field: late, clock: late, hand_eye: false };
-    let mut taken_back = false;
-    for (level, stage) in LIVE.iter().enumerate() {
-        let seed = word(config.seed, live.ticks * LIVE.len() as u64 + level as u64);
-        let scale_m = live.scale_m[level].unwrap_or(f64::INFINITY);
-        let before = x.clone();
-        match step(&problem, &prior, &stage.plan(free, scale_m, seed), &mut x) {
-            Some(seen) => live.scale_m[level] = Some(2.0 * seen.sigma_m),
-            None => (x, taken_back) = (before, true),
-        }
-    }
-    live.ticks += 1;
+    let taken_back = live.steps(config, &problem, &prior, free, &mut x);
     let plan = judging_live(config.seed);
     let zeros = vec![0.0; x.len()];
     let before = judge(&problem, &problem.poses(&zeros), &plan);
     let after = judge(&problem, &problem.poses(&x), &plan);
-    let strokes = strokes::look(&problem, &problem.poses(&x), &look(&problem, &problem.poses(&x), &plan).patches);
-    let mut notices = Vec::new();
-    if taken_back {
-        notices.push(Notice::StepTakenBack);
-    }
     let better = after.sigma_m <= before.sigma_m;
-    if !better {
-        notices.insert(0, Notice::KeptSmoothed);
-    }
+    let notices = [(!better, Notice::KeptSmoothed), (taken_back, Notice::StepTakenBack)];
+    let notices = notices.into_iter().filter(|(noticed, _)| *noticed).map(|(_, notice)| notice).collect();
     let (used, judged) = if better { (&x, &after) } else { (&zeros, &before) };
     let out = outcome(config, &problem, &prior, judged, used);
     let evidence = Evidence {
@@ -91,7 +76,7 @@ pub(crate) fn tick(
         tracker: tracker(&smoothed, None, noise),
         clock: clock(&problem, used, f64::NAN),
         hand_eye: hand_eye_held(config),
-        observed: Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: 6 },
+        observed: None,
         notices,
         frames_kept: out.frames.len(),
         dropped: out.dropped,
@@ -106,6 +91,22 @@ pub(crate) fn tick(
 }
 
 impl Live {
+    /// One step on each level. True when one was not finite and was taken back.
+    fn steps(&mut self, config: &Config, problem: &Problem, prior: &Prior, free: Free, x: &mut Vec<f64>) -> bool {
+        let mut taken_back = false;
+        for (level, stage) in LIVE.iter().enumerate() {
+            let seed = word(config.seed, self.ticks * LIVE.len() as u64 + level as u64);
+            let scale_m = self.scale_m[level].unwrap_or(f64::INFINITY);
+            let before = x.clone();
+            match step(problem, prior, &stage.plan(free, scale_m, seed), x) {
+                Some(seen) => self.scale_m[level] = Some(2.0 * seen.sigma_m),
+                None => (*x, taken_back) = (before, true),
+            }
+        }
+        self.ticks += 1;
+        taken_back
+    }
+
     /// The unknowns of the tick before, laid out for more time. New knots of the fast correction are 0; the slow one
     /// goes on as it was.
     fn go_on(&self, unknowns: &Unknowns) -> Vec<f64> {

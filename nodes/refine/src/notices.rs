@@ -22,8 +22,11 @@ pub(crate) fn notice_solution(solution: &Solution, notices: &mut Vec<Notice>) {
     }
 }
 
-/// Whether the thing was moved.
-pub(crate) fn notice_moved(problem: &Problem, seen: &Seen, notices: &mut Vec<Notice>) {
+/// What the surface itself shows: that it holds too little, or that the thing was moved.
+pub(crate) fn notice_surface(problem: &Problem, seen: &Seen, hold: Hold, notices: &mut Vec<Notice>) {
+    if hold.directions < 6 {
+        notices.push(holds_little(hold));
+    }
     let Some(divided) = moved::divide(problem, &seen.patches) else { return };
     if divided.apart_m > LEAST_APART_M.max(APART * seen.sigma_m) {
         let stamp_nanos = problem.start_nanos() + (divided.t_s * 1e9) as i64;
@@ -44,7 +47,7 @@ pub(crate) fn missing_stroke(strokes: &Strokes) -> Notice {
 }
 
 /// What a surface without shape leaves open.
-pub(crate) fn holds_little(hold: Hold) -> Notice {
+fn holds_little(hold: Hold) -> Notice {
     let advice = match hold.directions {
         0 => "no piece of surface was seen often enough".to_owned(),
         1..=3 => "the surface is a plane or a sphere, along which every stroke may slide: put something with edges beside it"

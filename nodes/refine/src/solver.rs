@@ -143,6 +143,7 @@ pub(crate) fn excess(problem: &Problem, prior: &Prior, seen: &Seen, x: &[f64]) -
 /// A finished schedule.
 pub(crate) struct Solution {
     pub x: Vec<f64>,
+    pub free: Free,
     pub noise: Noise,
     /// See [`coloured`]; `None` when too little is held.
     pub excess: Option<f64>,
@@ -188,7 +189,7 @@ pub(crate) fn run<'a>(
             }
         }
         if !again {
-            return (problem, Solution { x, noise, excess: excess_found, taken_back });
+            return (problem, Solution { x, free, noise, excess: excess_found, taken_back });
         }
         noise = coloured;
     }
