@@ -1,6 +1,6 @@
 //! `limn model`: a recording or a scan folder, through the whole pipeline, to a model.
 
-use crate::demo::table;
+use crate::demo::{UNSEEN, table};
 use crate::nodes;
 use crate::plan::Plan;
 use crate::recorded::Recorded;
@@ -58,6 +58,7 @@ fn sets(args: &Args, recorded: &Recorded, launch: &Path, out: &Path) -> Result<V
     let folder = toml::Value::String(out.display().to_string());
     let mut sets = recorded.sets(&args.input.canonicalize()?, launch)?;
     sets.extend([format!("export.folder={folder}"), "run.pace=fast".to_owned()]);
+    sets.extend(UNSEEN.map(str::to_owned));
     sets.extend(args.sets.iter().cloned());
     Ok(sets)
 }
@@ -88,6 +89,6 @@ fn tell(
     };
     report.write_json(&out.join("report.json"))?;
     let model = harvest.model.as_ref().map(report::painted).filter(|model| model.mesh.check().is_ok());
-    report.write_html(&out.join("report.html"), &Exhibits { model: model.as_ref(), truth: None })?;
+    report.write_html(&out.join("report.html"), &Exhibits { model: model.as_ref(), ..Exhibits::default() })?;
     Ok(report)
 }

@@ -102,10 +102,28 @@ pub const KINDS: &[Kind] = &[
         ..PLAIN
     },
     Kind {
+        name: "refine",
+        about: "the camera's way made consistent with the surface that it saw, and all points again on it",
+        inputs: &["camera", "tracker", "world", "rig"],
+        takes: |node| {
+            let measured = [topic::profile(node.of("camera")).key, topic::pose(node.of("tracker")).key];
+            let placed = [topic::scan(node.of("world")).key, topic::trajectory(node.of("world")).key];
+            measured.into_iter().chain(placed).chain([topic::calibration(node.of("rig")).key]).collect()
+        },
+        gives: |node| {
+            let placed = [topic::scan(&node.instance).key, topic::trajectory(&node.instance).key];
+            placed.into_iter().chain([topic::refinement(&node.instance).key]).collect()
+        },
+        defaults: defaults::<refine::Config>,
+        check: |config| check(config, refine::Config::check),
+        run: refine::node::run,
+        ..PLAIN
+    },
+    Kind {
         name: "cluster",
         about: "the paper's ball clustering: a thinned cloud, outliers gone",
-        inputs: &["camera"],
-        takes: |node| vec![topic::scan(node.of("camera")).key],
+        inputs: &["world"],
+        takes: |node| vec![topic::scan(node.of("world")).key],
         gives: |_| vec![topic::cloud().key],
         defaults: defaults::<cluster::Config>,
         check: |config| check(config, cluster::Config::check),
@@ -127,12 +145,12 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "paint",
         about: "colour from the lamp-lit pictures onto the surface",
-        inputs: &["camera", "rig"],
+        inputs: &["camera", "world", "rig"],
         takes: |node| {
             let (camera, rig) = (node.of("camera"), node.of("rig"));
             vec![
                 topic::colour(camera).key,
-                topic::trajectory(camera).key,
+                topic::trajectory(node.of("world")).key,
                 topic::mesh().key,
                 topic::calibration(rig).key,
             ]

@@ -116,6 +116,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }),
         failures: vec![],
     };
-    report.write_html(out.as_ref(), &Exhibits { model: Some(&model), truth: Some(&truth) })?;
+    report.write_html(out.as_ref(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() })?;
     Ok(())
 }

@@ -33,6 +33,6 @@ pub use albedo::{albedo, painted};
 pub use colour::{ColourError, ColourErrorReason, colour_error};
 pub use render::render;
 pub use seen::{Gate, seen_mask};
-pub use summary::{Counts, Machine, Refused, Report, Run, Stage, Time};
+pub use summary::{Aligned, Counts, Machine, Refined, Refused, Report, Run, Stage, Time};
 pub use view::{View, four_views};
 pub use write::{Exhibits, PageError};

@@ -20,12 +20,51 @@ pub struct Report {
     pub times: Vec<Time>,
     /// The nodes, in the order of the data.
     pub stages: Vec<Stage>,
-    /// The surface against the truth.
+    /// The surface against the truth, where it came to stand in the world.
     pub comparison: Option<Comparison>,
+    /// The surface against the truth after it was laid onto it: what is left is its shape.
+    pub aligned: Option<Aligned>,
+    /// What refinement has done.
+    pub refinement: Option<Refined>,
     /// The colours against the truth's albedo.
     pub colour: Option<ColourError>,
     /// What failed, in sentences.
     pub failures: Vec<String>,
+}
+
+/// A comparison after a rigid motion of the model onto the truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Aligned {
+    /// How far the model's middle was moved.
+    pub moved_mm: f64,
+    /// By how much it was turned.
+    pub turned_deg: f64,
+    /// What is left.
+    pub comparison: Comparison,
+}
+
+/// What refinement has done. Sigmas are one standard deviation.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Refined {
+    /// The surface without it, laid onto the truth.
+    pub without: Option<Aligned>,
+    /// How far points stood off their common surface.
+    pub residual_before_mm: f64,
+    /// How far they do now.
+    pub residual_after_mm: f64,
+    /// The rig's pose offset was found so much too large, with its sigma.
+    pub offset_error_ms: [f64; 2],
+    /// Correction of the hand-eye shift: its length.
+    pub hand_eye_shift_mm: f64,
+    /// Correction of the hand-eye rotation: its angle.
+    pub hand_eye_turn_deg: f64,
+    /// Median over the frames of what a pose's error moves their points along the ray.
+    pub frame_sigma_mm: f64,
+    /// Frames left out.
+    pub frames_dropped: u64,
+    /// What the operator should know.
+    pub notices: Vec<String>,
 }
 
 /// How a run was made: enough to make it again.
@@ -129,6 +168,11 @@ pub struct Refused {
 }
 
 impl Report {
+    /// How good the shape is: laid onto the truth when that was done, else as it stands.
+    pub fn shape(&self) -> Option<&Comparison> {
+        self.aligned.as_ref().map(|aligned| &aligned.comparison).or(self.comparison.as_ref())
+    }
+
     /// Messages lost on the whole way. Must be 0.
     pub fn lost(&self) -> u64 {
         self.stages.iter().map(|stage| stage.lost).sum()

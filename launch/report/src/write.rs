@@ -11,6 +11,8 @@ use std::path::Path;
 pub struct Exhibits<'a> {
     /// What came out, in the world (see [`crate::painted`]).
     pub model: Option<&'a LoadedMesh>,
+    /// What would have come out without refinement.
+    pub before: Option<&'a LoadedMesh>,
     /// What was scanned, in the same frame.
     pub truth: Option<&'a LoadedMesh>,
 }
@@ -42,7 +44,7 @@ impl Report {
 
     /// Writes the page: one file that needs no other.
     pub fn write_html(&self, path: &Path, exhibits: &Exhibits<'_>) -> Result<(), PageError> {
-        for surface in [exhibits.model, exhibits.truth].into_iter().flatten() {
+        for surface in [exhibits.model, exhibits.before, exhibits.truth].into_iter().flatten() {
             surface.mesh.check()?;
         }
         write(path, &page::html(self, exhibits)?)

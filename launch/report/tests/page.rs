@@ -39,14 +39,14 @@ fn page(report: &Report, exhibits: &Exhibits<'_>) -> String {
 #[test]
 fn the_page_stands_alone_and_takes_no_markup_from_names() {
     let (model, truth) = (tetrahedron(1e-4), tetrahedron(0.0));
-    let html = page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth) });
+    let html = page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() });
     for outside in ["http://", "https://", "<script", "<link", "@import", "url(h"] {
         assert!(!html.contains(outside), "{outside}");
     }
     assert!(html.contains("&lt;script&gt;") && html.contains("depth &lt; gate &amp; &quot;odd&quot;"));
     assert_eq!(html.matches("data:image/png;base64,").count(), 16);
     assert!(html.contains("No message was lost.") && html.contains("1\u{202f}234"));
-    assert_eq!(html, page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth) }), "same input, same bytes");
+    assert_eq!(html, page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() }), "same input, same bytes");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn the_json_comes_back_as_it_was() {
 #[test]
 fn a_surface_that_cannot_be_shown_is_named() {
     let nothing = LoadedMesh { mesh: TriangleMesh::default(), texture: None };
-    let exhibits = Exhibits { model: Some(&nothing), truth: None };
+    let exhibits = Exhibits { model: Some(&nothing), ..Exhibits::default() };
     let folder = tempfile::tempdir().unwrap();
     let refused = Report::default().write_html(&folder.path().join("report.html"), &exhibits);
     assert!(matches!(refused, Err(PageError::Surface(_))));

@@ -1,19 +1,23 @@
 //! Holds what came out against what is known to be true.
 
+use super::standing::{lay_onto, move_by};
 use super::{Args, Pace};
-use crate::run::Harvest;
+use crate::plan::Plan;
+use crate::run::{Harvest, before};
 use anyhow::{Context as _, Result};
 use formats::mesh::LoadedMesh;
-use geometry::{Camera, MeshIndex, TimedPose, TriangleMesh};
-use report::{Exhibits, Gate, Machine, Report, Run, Time};
+use geometry::{Camera, METRES_PER_MM, MeshIndex, TimedPose, TriangleMesh};
+use nalgebra::{Isometry3, Point3};
+use report::{Aligned, Exhibits, Gate, Machine, Refined, Report, Run, Time};
 use std::path::Path;
 use std::time::Instant;
 use world::{Known, Surface};
 
-/// Compares, and writes truth.ply, report.json and report.html.
+/// Compares, and writes truth.ply, before.ply, report.json and report.html.
 pub fn judge(
     args: &Args,
     known: &Known,
+    plan: &Plan,
     harvest: &Harvest,
     failure: Option<&anyhow::Error>,
     started: Instant,
@@ -31,24 +35,109 @@ pub fn judge(
         ..Report::default()
     };
     let compared = Instant::now();
-    let model = harvest.model.as_ref().map(report::painted);
-    match compare(known, harvest, &truth) {
-        Ok(comparison) => report.comparison = Some(comparison),
-        Err(error) => report.failures.push(format!("{error:#}")),
+    let bench = Bench::new(known, harvest, truth)?;
+    let onto = bench.shape(harvest, &mut report);
+    let before = bench.refinement(plan, harvest, &mut report);
+    if let Some(before) = &before {
+        formats::mesh::write_ply(&out.join("before.ply"), &before.mesh)?;
     }
-    if let Some(model) = &harvest.model {
-        match report::colour_error(model, &truth) {
-            Ok(error) => report.colour = Some(error),
-            Err(reason) => report.failures.push(reason.to_string()),
-        }
-    }
+    let model = harvest.model.as_ref().map(|model| bench.colour(model, &onto, &mut report));
     report.times = harvest.times(started);
     let comparison = Time { what: "comparison".to_owned(), seconds: compared.elapsed().as_secs_f64() };
     report.times.insert(report.times.len().saturating_sub(1), comparison);
     report.write_json(&out.join("report.json"))?;
-    let exhibits = Exhibits { model: model.as_ref().filter(|model| model.mesh.check().is_ok()), truth: Some(&truth) };
+    let exhibits = Exhibits {
+        model: model.as_ref().filter(|model| model.mesh.check().is_ok()),
+        before: before.as_ref().filter(|before| before.mesh.check().is_ok()),
+        truth: Some(&bench.truth),
+    };
     report.write_html(&out.join("report.html"), &exhibits)?;
     Ok(report)
+}
+
+/// What everything is held against.
+struct Bench {
+    truth: LoadedMesh,
+    /// Of the truth's samples, those that the camera could see.
+    seen: Vec<bool>,
+    seed: u64,
+}
+
+impl Bench {
+    fn new(known: &Known, harvest: &Harvest, truth: LoadedMesh) -> Result<Self> {
+        let samples = geometry::truth_samples(&truth.mesh, known.seed)?;
+        let scene = MeshIndex::new(&known.scene.whole_mesh())?;
+        let way: Vec<_> = harvest.truth.iter().map(|sample| TimedPose::from(sample).pose).collect();
+        let camera: &Camera = &known.rig.camera;
+        let seen = report::seen_mask(&samples, &scene, &way, camera, &Gate::default());
+        Ok(Self { truth, seen, seed: known.seed })
+    }
+
+    /// The surface where it stands, and laid onto the truth. Returns the motion for that.
+    fn shape(&self, harvest: &Harvest, report: &mut Report) -> Isometry3<f64> {
+        let compared = || -> Result<_> {
+            let mesh = harvest.mesh.as_ref().context("there is no surface to compare")?;
+            let mut mesh = TriangleMesh::from(mesh);
+            let comparison = geometry::compare(&mesh, &self.truth.mesh, Some(&self.seen), self.seed)?;
+            Ok((comparison, lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?))
+        };
+        match compared() {
+            Ok((comparison, (onto, aligned))) => {
+                (report.comparison, report.aligned) = (Some(comparison), Some(aligned));
+                onto
+            }
+            Err(error) => {
+                report.failures.push(format!("{error:#}"));
+                Isometry3::identity()
+            }
+        }
+    }
+
+    /// What refinement says of itself, and the surface that would have come out without it.
+    fn refinement(&self, plan: &Plan, harvest: &Harvest, report: &mut Report) -> Option<LoadedMesh> {
+        let refinement = harvest.refinement.as_ref()?;
+        // Without it there may be nothing that could be called a surface, which is no failure.
+        let without = before::surface(plan, &harvest.placed).and_then(|mut mesh| {
+            let (_, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?;
+            Ok((mesh, aligned))
+        });
+        let (before, aligned): (Option<_>, Option<Aligned>) = without.ok().unzip();
+        report.refinement = Some(Refined { without: aligned, ..refined(refinement) });
+        before.map(|mesh| LoadedMesh { mesh, texture: None })
+    }
+
+    /// The colours of the model, after it was laid onto the truth.
+    fn colour(&self, model: &wire::Model, onto: &Isometry3<f64>, report: &mut Report) -> LoadedMesh {
+        let mut laid = model.clone();
+        laid.mesh.vertices_m.iter_mut().for_each(|p| *p = (onto * Point3::from(*p).cast::<f64>()).cast::<f32>().into());
+        match report::colour_error(&laid, &self.truth) {
+            Ok(error) => report.colour = Some(error),
+            Err(reason) => report.failures.push(reason.to_string()),
+        }
+        let mut shown = report::painted(model);
+        move_by(&mut shown.mesh, onto);
+        shown
+    }
+}
+
+fn refined(refinement: &wire::Refinement) -> Refined {
+    let mm = |metres: f64| metres / METRES_PER_MM;
+    let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut sigmas: Vec<f32> = refinement.frames.iter().map(|frame| frame.sigma_m).collect();
+    sigmas.sort_by(f32::total_cmp);
+    let sigma_m = sigmas.get(sigmas.len() / 2).copied().unwrap_or_default();
+    let ms = |nanos: i64| nanos as f64 * 1e-6;
+    Refined {
+        without: None,
+        residual_before_mm: mm(refinement.residual_before_m),
+        residual_after_mm: mm(refinement.residual_after_m),
+        offset_error_ms: [ms(refinement.pose_offset_error_nanos), ms(refinement.pose_offset_sigma_nanos)],
+        hand_eye_shift_mm: mm(length(refinement.hand_eye_shift_m)),
+        hand_eye_turn_deg: length(refinement.hand_eye_turn_rad).to_degrees(),
+        frame_sigma_mm: mm(f64::from(sigma_m)),
+        frames_dropped: refinement.frames_dropped,
+        notices: refinement.notices.clone(),
+    }
 }
 
 fn loaded(surface: &Surface) -> LoadedMesh {
@@ -57,18 +146,6 @@ fn loaded(surface: &Surface) -> LoadedMesh {
         image::RgbImage::from_raw(texture.width as u32, texture.height as u32, bytes)
     });
     LoadedMesh { mesh: surface.mesh.clone(), texture }
-}
-
-fn compare(known: &Known, harvest: &Harvest, truth: &LoadedMesh) -> Result<geometry::Comparison> {
-    let mesh = harvest.mesh.as_ref().context("there is no surface to compare")?;
-    let model = TriangleMesh::from(mesh);
-    let seed = known.seed;
-    let samples = geometry::truth_samples(&truth.mesh, seed)?;
-    let scene = MeshIndex::new(&known.scene.whole_mesh())?;
-    let way: Vec<_> = harvest.truth.iter().map(|sample| TimedPose::from(sample).pose).collect();
-    let camera: &Camera = &known.rig.camera;
-    let seen = report::seen_mask(&samples, &scene, &way, camera, &Gate::default());
-    Ok(geometry::compare(&model, &truth.mesh, Some(&seen), seed)?)
 }
 
 fn about(args: &Args, known: &Known) -> Run {

@@ -2,6 +2,7 @@
 
 pub(crate) mod files;
 mod judge;
+mod standing;
 pub(crate) mod table;
 
 use crate::nodes;
@@ -29,6 +30,9 @@ pub enum Pace {
     /// As fast as the machine can, with nothing lost.
     Fast,
 }
+
+/// What is made for the eye alone is not made when nobody looks.
+pub(crate) const UNSEEN: [&str; 2] = ["surface.live_every_s=0", "refine.live_every_s=0"];
 
 /// The arguments.
 #[derive(Debug, Clone, ClapArgs)]
@@ -93,8 +97,8 @@ pub fn run(args: &Args) -> Result<()> {
     std::fs::write(out.join("config.toml"), plan.to_toml()).context("writing the effective configuration")?;
     let linger = !args.headless && std::io::IsTerminal::is_terminal(&std::io::stdin());
     let course = Course { out: &out, sweep_s: Some(known.hand.duration_s()), linger };
-    let (harvest, outcome) = run::run(plan, &course)?;
-    let report = judge::judge(args, &known, &harvest, outcome.as_ref().err(), started, &out)?;
+    let (harvest, outcome) = run::run(plan.clone(), &course)?;
+    let report = judge::judge(args, &known, &plan, &harvest, outcome.as_ref().err(), started, &out)?;
     table::print(&report, &out)?;
     outcome?;
     if !report.is_good() {
@@ -123,8 +127,7 @@ fn sets(args: &Args, setup: &Setup, out: &std::path::Path) -> Vec<String> {
     sets.push(format!("record.file={}", text(&out.join("scan.mcap"))));
     if args.headless {
         sets.push("nodes.view.enabled=false".to_owned());
-        // Nobody looks at it.
-        sets.push("surface.live_every_s=0".to_owned());
+        sets.extend(UNSEEN.map(str::to_owned));
     }
     sets.extend(args.sets.iter().cloned());
     sets

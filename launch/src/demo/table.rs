@@ -30,6 +30,21 @@ pub fn print(report: &Report, out: &Path) -> Result<()> {
             shares("truth that the camera could see", seen);
         }
     }
+    if let Some(aligned) = &report.aligned {
+        let d = &aligned.comparison.model_to_truth;
+        row("laid onto the truth", format!("rms {:.3} mm, median {:.3}, 95 % {:.3}", d.rms_mm, d.median_mm, d.p95_mm));
+        row("moved for that", format!("{:.2} mm, {:.2} degrees", aligned.moved_mm, aligned.turned_deg));
+    }
+    if let Some(refined) = &report.refinement {
+        if let Some(without) = &refined.without {
+            let d = &without.comparison.model_to_truth;
+            row("the same without refinement", format!("rms {:.3} mm, 95 % {:.3}", d.rms_mm, d.p95_mm));
+        }
+        let [offset, sigma] = refined.offset_error_ms;
+        row("clock offset found", format!("{offset:+.2} ms, sigma {sigma:.2}"));
+        row("frames left out", refined.frames_dropped.to_string());
+        refined.notices.iter().for_each(|notice| row("NOTE", notice.clone()));
+    }
     if let Some(colour) = &report.colour {
         row("colour against albedo", format!("rms {:.1} of 255", colour.rms_255));
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::time::Instant;
-use wire::{Health, InputHealth, Mesh, Model, TrajectorySample};
+use wire::{Health, InputHealth, Mesh, Model, Refinement, Scan, TrajectorySample};
 
 /// Gathered from the bus.
 #[derive(Default)]
@@ -19,6 +19,10 @@ pub struct Harvest {
     pub began: Option<Instant>,
     /// Registered points.
     pub points: u64,
+    /// What register made of the scan, where something better came of it.
+    pub placed: Vec<Scan>,
+    /// What refinement says of itself.
+    pub refinement: Option<Refinement>,
     /// Balls of the final cloud.
     pub balls: u64,
     /// The true way of the camera, when the world is known.

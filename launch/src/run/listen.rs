@@ -2,13 +2,14 @@
 
 use super::bars::Bars;
 use super::harvest::Harvest;
+use crate::plan::Plan;
 use anyhow::Result;
 use bus::{Bus, BusConfig, Subscriber};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use wire::{Cloud, Health, Mesh, Model, Progress, Scan, Trajectory, topic};
+use wire::{Cloud, Health, Mesh, Model, Progress, Refinement, Scan, Trajectory, topic};
 
 /// A thread that gathers until it is told to finish.
 pub struct Listener {
@@ -20,6 +21,7 @@ struct Ears {
     healths: Subscriber<Health>,
     progress: Subscriber<Progress>,
     scans: Subscriber<Scan>,
+    refinements: Option<Subscriber<Refinement>>,
     clouds: Subscriber<Cloud>,
     meshes: Subscriber<Mesh>,
     models: Subscriber<Model>,
@@ -28,12 +30,15 @@ struct Ears {
 
 impl Listener {
     /// Joins the bus. Nothing that comes later is missed.
-    pub fn start(config: &BusConfig, bars: Bars) -> Result<Self> {
+    pub fn start(config: &BusConfig, plan: &Plan, bars: Bars) -> Result<Self> {
+        let instance = |kind: &str| plan.nodes.iter().find(|n| n.kind == kind).map(|n| n.inputs.instance.clone());
+        let refined = instance("refine").map(|world| topic::refinement(&world));
         let bus = Bus::open(config)?;
         let mut ears = Ears {
             healths: bus.subscribe(&topic::health("**"), 1024)?,
             progress: bus.subscribe(&topic::progress("**"), 1 << 16)?,
-            scans: bus.subscribe(&topic::scan("*"), 1 << 14)?,
+            scans: bus.subscribe(&topic::scan(&instance("register").unwrap_or_default()), 1 << 14)?,
+            refinements: refined.map(|topic| bus.subscribe(&topic, 8)).transpose()?,
             clouds: bus.subscribe(&topic::cloud(), 1 << 14)?,
             meshes: bus.subscribe(&topic::mesh(), 4)?,
             models: bus.subscribe(&topic::textured(), 4)?,
@@ -65,6 +70,12 @@ impl Ears {
         while let Some(scan) = self.scans.next() {
             harvest.began.get_or_insert_with(Instant::now);
             harvest.points += scan.points.len() as u64;
+            if self.refinements.is_some() {
+                harvest.placed.push(scan);
+            }
+        }
+        if let Some(refinements) = &mut self.refinements {
+            harvest.refinement = refinements.newest().or(harvest.refinement.take());
         }
         while let Some(progress) = self.progress.next() {
             if progress.header.is_end() {

@@ -2,6 +2,7 @@
 
 mod account;
 mod bars;
+pub mod before;
 mod harvest;
 mod listen;
 
@@ -53,7 +54,7 @@ async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> 
     if let Err(error) = &announced {
         tracing::warn!("`limn top` and its like will not find this rig: {error:#}");
     }
-    let listener = Listener::start(launcher.bus(), bars.clone())?;
+    let listener = Listener::start(launcher.bus(), launcher.plan(), bars.clone())?;
     let interrupted = tokio::signal::ctrl_c();
     let outcome = tokio::select! {
         outcome = course_of(&launcher, &bars) => outcome,

@@ -26,6 +26,7 @@ macro_rules! for_all_messages {
             $crate::Pose,
             $crate::Profile,
             $crate::Progress,
+            $crate::Refinement,
             $crate::RunPhase,
             $crate::Scan,
             $crate::Stripe,

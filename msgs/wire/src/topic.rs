@@ -4,7 +4,7 @@
 //! `**` does not see; a latched topic never has an `@` (Zenoh's history cannot find it there).
 
 use crate::{
-    Calibration, Cloud, Frame, Health, LogLine, Mesh, Message, Model, Pose, Profile, Progress, RunPhase, Scan, Stripe,
+    Calibration, Cloud, Frame, Health, LogLine, Mesh, Message, Model, Pose, Profile, Progress, Refinement, RunPhase, Scan, Stripe,
     Trajectory,
 };
 use std::marker::PhantomData;
@@ -89,6 +89,8 @@ topics! {
     scan(camera) -> Scan = "world/{camera}/scan", Stream;
     /// The way of one camera in the world.
     trajectory(camera) -> Trajectory = "world/{camera}/trajectory", Stream;
+    /// What the latest revision of a refined world rests on.
+    refinement(world) -> Refinement = "world/{world}/refinement", Latched;
     /// The thinned cloud.
     cloud() -> Cloud = "model/cloud", Stream;
     /// The surface.

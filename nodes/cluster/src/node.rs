@@ -4,12 +4,12 @@ use crate::{BallClusterer, Config};
 use kit::{Node, STREAM_HISTORY};
 use wire::{Header, Phase, topic};
 
-/// Clusters the scans of a camera until it is told to stop.
+/// Clusters the scans of one world until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let every_nanos = (config.publish_every_s * 1e9) as i64;
     let mut clusterer = BallClusterer::new(config)?;
-    let mut scans = node.stream(&topic::scan(node.spec().source_of("camera")), STREAM_HISTORY)?;
+    let mut scans = node.stream(&topic::scan(node.spec().source_of("world")), STREAM_HISTORY)?;
     let mut clouds = node.output(&topic::cloud())?;
     node.ready()?;
     let mut published_nanos = 0;

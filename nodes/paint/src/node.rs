@@ -14,6 +14,8 @@ struct Scan {
     header: Header,
     store: FrameStore,
     way: TrajectoryBuffer,
+    /// Of the way.
+    revision: u32,
     mesh: Option<Mesh>,
     frames_ended: bool,
     way_ended: bool,
@@ -22,7 +24,7 @@ struct Scan {
 impl Scan {
     fn new(header: Header, bound_bytes: usize) -> Self {
         let (store, way) = (FrameStore::new(bound_bytes), TrajectoryBuffer::default());
-        Self { header, store, way, mesh: None, frames_ended: false, way_ended: false }
+        Self { header, store, way, revision: 0, mesh: None, frames_ended: false, way_ended: false }
     }
 }
 
@@ -37,10 +39,10 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     config.check()?;
     let bound_bytes = config.memory_mib << 20;
-    let camera = node.spec().source_of("camera").to_owned();
+    let [camera, world] = ["camera", "world"].map(|input| node.spec().source_of(input).to_owned());
     let mut inputs = Inputs {
         frames: node.stream(&topic::colour(&camera), GATHERED_HISTORY)?,
-        way: node.stream(&topic::trajectory(&camera), STREAM_HISTORY)?,
+        way: node.stream(&topic::trajectory(&world), STREAM_HISTORY)?,
         meshes: node.input(&topic::mesh(), 4)?,
     };
     let mut models = node.output(&topic::textured())?;
@@ -73,6 +75,10 @@ fn take(
 ) -> anyhow::Result<()> {
     while let Some(trajectory) = inputs.way.next() {
         renew(scan, &trajectory.header, bound_bytes);
+        // A better way of the same scan.
+        if trajectory.header.revision > scan.revision {
+            (scan.revision, scan.way, scan.way_ended) = (trajectory.header.revision, TrajectoryBuffer::default(), false);
+        }
         trajectory.samples.iter().for_each(|sample| {
             scan.way.push(sample.into());
         });

@@ -12,7 +12,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// The page as text.
 pub fn html(report: &Report, exhibits: &Exhibits<'_>) -> Result<String, PageError> {
-    let end_mm = error_map::end_mm(report.comparison.as_ref().map_or(1.0, |c| c.model_to_truth.p95_mm));
+    let end_mm = error_map::end_mm(report.shape().map_or(1.0, |c| c.model_to_truth.p95_mm));
     let title = if report.title.is_empty() { "A scan" } else { &report.title };
     let title = escape(title);
     Ok(format!(
@@ -57,11 +57,17 @@ fn verdict(report: &Report) -> String {
 
 fn accuracy(report: &Report, end_mm: f64) -> String {
     let mut text = String::new();
-    if let Some(comparison) = &report.comparison {
+    if let Some(comparison) = report.shape() {
         if !comparison.signed_mm.is_empty() {
             text.push_str(&chart::histogram(&comparison.signed_mm, end_mm));
         }
         text.push_str(&tables::comparison(comparison));
+    }
+    if let Some(aligned) = &report.aligned {
+        text.push_str(&tables::standing(aligned, report.comparison.as_ref()));
+    }
+    if let Some(refined) = &report.refinement {
+        text.push_str(&tables::refined(refined));
     }
     if let Some(colour) = &report.colour {
         let three = |values: [f64; 3]| values.map(number).join(", ");

@@ -13,7 +13,7 @@ const HEIGHT: u32 = 340;
 /// Albedo of a surface without colours.
 const PLASTER: [f32; 3] = [0.62, 0.60, 0.56];
 
-/// The pictures, row by row: truth, model, shape alone, error map; what is missing is left out. The views are chosen by the
+/// The pictures, row by row: truth, before refinement, model, shape alone, error map; what is missing is left out. The views are chosen by the
 /// truth, or by the model when there is none.
 pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError> {
     let Some(framing) = exhibits.truth.or(exhibits.model) else { return Ok(String::new()) };
@@ -21,6 +21,10 @@ pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError
     let mut rows = String::new();
     if let Some(truth) = exhibits.truth {
         rows.push_str(&row("Truth", "", &painted(truth, &views))?);
+    }
+    if let Some(before) = exhibits.before {
+        let caption = "What the tracker alone would have given.";
+        rows.push_str(&row("Before refinement", caption, &plaster(&before.mesh, &views))?);
     }
     if let Some(model) = exhibits.model {
         rows.push_str(&row("Model", "", &painted(model, &views))?);

@@ -1,14 +1,14 @@
 //! The numbers, as tables and as the row of figures at the head of the page.
 
 use super::text::{count, escape, known, number, percent};
-use crate::{Report, Stage};
+use crate::{Aligned, Refined, Report, Stage};
 use geometry::{Comparison, Completeness};
 use std::fmt::Write as _;
 
 /// What one looks for first.
 pub fn key_figures(report: &Report) -> String {
     let mut figures: Vec<(String, &str, &str)> = Vec::new();
-    if let Some(comparison) = &report.comparison {
+    if let Some(comparison) = report.shape() {
         let to_truth = &comparison.model_to_truth;
         figures.push((number(to_truth.rms_mm), "mm", "rms distance to the truth"));
         figures.push((number(to_truth.p95_mm), "mm", "95 % are closer"));
@@ -69,6 +69,46 @@ fn within(all: &Completeness, seen: Option<&Completeness>) -> String {
         count(all.samples as u64),
         rows.collect::<String>()
     )
+}
+
+/// Where the model stood, and what that alone cost.
+pub fn standing(aligned: &Aligned, as_it_stands: Option<&Comparison>) -> String {
+    let stood = as_it_stands.map(|comparison| format!("{} mm", number(comparison.model_to_truth.rms_mm)));
+    facts(
+        "The figures above are those of the shape: the model was laid onto the truth first, as a whole",
+        &[
+            ("moved by", format!("{} mm", number(aligned.moved_mm))),
+            ("turned by", format!("{} degrees", number(aligned.turned_deg))),
+            ("root mean square where it stood", stood.unwrap_or_default()),
+        ],
+    )
+}
+
+/// What refinement has done.
+pub fn refined(refined: &Refined) -> String {
+    let without = refined.without.as_ref().map(|without| {
+        let d = &without.comparison.model_to_truth;
+        format!("{} mm, 95 % within {} mm", number(d.rms_mm), number(d.p95_mm))
+    });
+    let [offset, sigma] = refined.offset_error_ms.map(number);
+    let mut text = facts(
+        "What refinement has done",
+        &[
+            ("root mean square without it", without.unwrap_or_default()),
+            ("points off their common surface, before", format!("{} mm", number(refined.residual_before_mm))),
+            ("and after", format!("{} mm", number(refined.residual_after_mm))),
+            ("the rig's pose offset is too large by", format!("{offset} \u{b1} {sigma} ms")),
+            ("hand-eye shift corrected by", format!("{} mm", number(refined.hand_eye_shift_mm))),
+            ("hand-eye rotation corrected by", format!("{} degrees", number(refined.hand_eye_turn_deg))),
+            ("error of a frame along its rays, as stated", format!("{} mm", number(refined.frame_sigma_mm))),
+            ("frames left out", count(refined.frames_dropped)),
+        ],
+    );
+    if !refined.notices.is_empty() {
+        let notices: String = refined.notices.iter().map(|notice| format!("<li>{}</li>", escape(notice))).collect();
+        text.push_str(&format!("<div class=\"verdict\"><ul>{notices}</ul></div>"));
+    }
+    text
 }
 
 /// Each node's work.

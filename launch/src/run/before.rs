@@ -1,0 +1,23 @@
+//! What the scan would be without refinement: the same balls and the same surface, over what `register` made of it.
+
+use crate::plan::Plan;
+use anyhow::{Context as _, Result};
+use cluster::BallClusterer;
+use geometry::TriangleMesh;
+use serde::de::DeserializeOwned;
+use surface::Surfer;
+use wire::Scan;
+
+/// The surface through these scans, with the plan's own settings for both steps.
+pub fn surface(plan: &Plan, scans: &[Scan]) -> Result<TriangleMesh> {
+    let mut clusterer = BallClusterer::new(config(plan, "cluster")?)?;
+    scans.iter().for_each(|scan| clusterer.insert(scan));
+    let mut surfer = Surfer::new(config(plan, "surface")?)?;
+    surfer.update(&clusterer.whole());
+    Ok(TriangleMesh::from(&surfer.final_mesh()))
+}
+
+fn config<C: DeserializeOwned>(plan: &Plan, kind: &str) -> Result<C> {
+    let node = plan.nodes.iter().find(|node| node.kind == kind).with_context(|| format!("no node {kind}"))?;
+    Ok(C::deserialize(&node.config)?)
+}
