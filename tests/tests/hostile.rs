@@ -1,0 +1,86 @@
+//! What should never come, from one end to the other: messages of another version, garbage, and a scan of nothing.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
+use system_tests::rig::{Course, Rig};
+use system_tests::{lost, report, same_bytes, short_demo, succeed};
+use wire::{Cloud, Frame, Mesh, Message, Pose, Profile, Scan, Stripe, Trajectory, codec, topic};
+
+/// As a later version of limn would write it.
+fn newer<M: Message>() -> String {
+    format!("{}@{}:00000000deadbeef", M::NAME, M::VERSION + 1)
+}
+
+#[test]
+fn a_newer_message_is_named_garbage_is_counted_and_the_scan_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let [quiet, noisy] = ["quiet", "noisy"].map(|name| folder.path().join(name));
+    succeed(&mut short_demo(&quiet));
+    let mut rig = Rig::start(&mut short_demo(&noisy));
+    let bus = rig.bus();
+    Course::follow(&bus).wait_for("cluster/model", 1_000_000_000);
+    let streams = [
+        (topic::frame("head").key, newer::<Frame>(), codec::schema::<Frame>()),
+        (topic::colour("head").key, newer::<Frame>(), codec::schema::<Frame>()),
+        (topic::pose("head").key, newer::<Pose>(), codec::schema::<Pose>()),
+        (topic::stripe("head").key, newer::<Stripe>(), codec::schema::<Stripe>()),
+        (topic::profile("head").key, newer::<Profile>(), codec::schema::<Profile>()),
+        (topic::scan("head").key, newer::<Scan>(), codec::schema::<Scan>()),
+        (topic::trajectory("head").key, newer::<Trajectory>(), codec::schema::<Trajectory>()),
+        (topic::cloud().key, newer::<Cloud>(), codec::schema::<Cloud>()),
+        (topic::mesh().key, newer::<Mesh>(), codec::schema::<Mesh>()),
+    ];
+    for (key, newer, ours) in &streams {
+        bus.forward(key, newer, vec![1, 2, 3]).unwrap();
+        bus.forward(key, ours, vec![0xff; 40]).unwrap();
+        bus.forward(key, "", vec![]).unwrap();
+    }
+    for key in ["run/phase", "@progress/stripe/head", "@order/phase", "@health/stripe/head", "@log/stripe/head"] {
+        bus.forward(key, "Nonsense@1:0", vec![0xff; 40]).unwrap();
+    }
+    drop(bus);
+    let (status, said) = rig.end();
+    assert!(status.success(), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    let told = report(&noisy);
+    assert_eq!(lost(&told), 0, "{said}");
+    for file in ["cloud.ply", "mesh.ply", "model.glb"] {
+        same_bytes(&quiet, &noisy, file);
+    }
+    let log = std::fs::read_to_string(noisy.join("log.txt")).unwrap();
+    for (key, newer, ours) in &streams {
+        let named = |line: &&str| line.contains(key.as_str()) && line.contains(newer.as_str());
+        let line = log.lines().find(named).unwrap_or_else(|| panic!("{key} is not named in the log:\n{log}"));
+        assert!(line.contains(ours.as_str()) && line.contains("this node is the older one: update it"), "{line}");
+        assert!(
+            log.lines().any(|line| line.contains(key.as_str()) && line.contains("40 bytes are no")),
+            "{key}: {log}"
+        );
+    }
+    // Who reads it says so in its own name, and the report counts it.
+    assert!(log.lines().any(|line| line.trim_start().starts_with("stripe | ERROR camera/head/frame")), "{log}");
+    let refused = |node: &str| {
+        let stages = told["stages"].as_array().unwrap();
+        let stage = stages.iter().find(|stage| stage["node"] == node).unwrap();
+        stage["refused"].as_array().unwrap().iter().filter_map(|r| r["count"].as_u64()).sum::<u64>()
+    };
+    for node in ["stripe/head", "triangulate/head", "register/head", "cluster/model", "surface/model", "paint/model"] {
+        assert!(refused(node) >= 3, "{node}: {told:#}");
+    }
+}
+
+#[test]
+fn a_scan_of_nothing_ends_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rig = short_demo(folder.path());
+    rig.args(["--set", "stripe.min_amplitude=250"]);
+    let (status, said) = Rig::start(&mut rig).end();
+    assert!(!status.success(), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    assert!(said.contains("no stripe was seen"), "{said}");
+    let told = report(folder.path());
+    assert_eq!((lost(&told), told["counts"]["points"].as_u64()), (0, Some(0)), "{said}");
+    // What was measured is kept: another setting may find it.
+    assert!(folder.path().join("scan.mcap").metadata().unwrap().len() > 0);
+    assert!(folder.path().join("report.html").is_file());
+}
