@@ -99,16 +99,14 @@ impl BallClusterer {
         }
     }
 
-    /// D, for points whose places are as well known as this one's.
+    /// D, for points whose poses are as well known as this one's.
     fn radius_m(&self, scan: &Scan, point: &ScanPoint) -> f32 {
         let Config { ball_radius_m, radius_per_sigma, .. } = self.config;
         let eye = Vector3::from(scan.world_from_camera.translation_m);
         let lever_m = (Vector3::from(point.position_m).cast() - eye).norm();
-        let variance = scan.position_sigma_m.powi(2)
-            + (scan.rotation_sigma_rad * lever_m).powi(2)
-            + f64::from(point.sigma_m).powi(2);
+        let sigma_m = scan.position_sigma_m.hypot(scan.rotation_sigma_rad * lever_m);
         // What is not finite is no reason for a larger ball, and its points are refused one by one.
-        let wanted = (radius_per_sigma * variance.sqrt()).min(MOST_RADIUS_M);
+        let wanted = (radius_per_sigma * sigma_m).min(MOST_RADIUS_M);
         if wanted > ball_radius_m { wanted as f32 } else { ball_radius_m as f32 }
     }
 

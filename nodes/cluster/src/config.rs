@@ -9,8 +9,8 @@ pub struct Config {
     /// D of the paper: the radius of a ball. Points of a ball are averaged, so it should be no smaller than the noise and
     /// no larger than the finest detail that is to survive. Default 0.0008.
     pub ball_radius_m: f64,
-    /// While places are known badly, balls are larger: D is at least so many times the standard deviation that the first
-    /// point of a scan (or of its revision) states for its place. 0: never. Default 2.
+    /// While poses are known badly, balls are larger: D is at least so many times what the pose's standard deviation, as the
+    /// first scan (or the first of a revision) states it, moves its first point. 0: never. Default 2.
     pub radius_per_sigma: f64,
     /// T of the paper: a ball with fewer points is an outlier. Default 4.
     pub least_points: u32,

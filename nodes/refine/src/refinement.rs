@@ -50,8 +50,9 @@ impl RefinedFrame {
         Scan {
             header: self.header.derived(),
             world_from_camera: rigid_to_wire(pose),
-            position_sigma_m: self.pose.position_sigma_m,
-            rotation_sigma_rad: self.pose.rotation_sigma_rad,
+            // The points' own sigmas hold what the pose's error does to the surface. Where the whole stands is another matter.
+            position_sigma_m: 0.0,
+            rotation_sigma_rad: 0.0,
             points: self.points.iter().map(place).collect::<Bulk<_>>(),
             refused: Vec::new(),
         }

@@ -15,7 +15,8 @@ pub struct Config {
     /// In the final mesh, holes whose rim is at most pi times this long are filled. A large value closes an open
     /// underside as well: the cap is a membrane over the rim.
     pub fill_holes_mm: f64,
-    /// In the final mesh, loose pieces whose bounding box has a shorter diagonal than this are dropped.
+    /// In the final mesh, loose pieces whose bounding box has a shorter diagonal than this are dropped, and those with less
+    /// area than a quarter of its square.
     pub drop_islands_mm: f64,
     /// Seconds between two live surfaces, at least: they are for the eye, and wait until nothing else is to do. 0: none.
     pub live_every_s: f64,

@@ -87,7 +87,10 @@ pub fn split_bow_ties(sheet: &mut Sheet) {
     }
 }
 
-/// Drops the pieces whose bounding box has a shorter diagonal than this.
+/// Of the square of an island's least diagonal, its least area: a strip may be long and still be nothing.
+const LEAST_SHARE_OF_SQUARE: f32 = 0.25;
+
+/// Drops the pieces whose bounding box has a shorter diagonal than this, or that have less area than a quarter of its square.
 pub fn drop_islands(sheet: &mut Sheet, shortest_m: f32) {
     let mut pieces = Sets::new(sheet.positions.len());
     for &[a, b, c] in &sheet.triangles {
@@ -100,9 +103,15 @@ pub fn drop_islands(sheet: &mut Sheet, shortest_m: f32) {
         let [low, high] = &mut boxes[pieces.find(v) as usize];
         (*low, *high) = (low.inf(p), high.sup(p));
     }
+    let mut areas_m2 = vec![0.0; sheet.positions.len()];
+    for triangle in &sheet.triangles {
+        let [a, b, c] = triangle.map(|v| sheet.positions[v as usize]);
+        areas_m2[pieces.find(triangle[0]) as usize] += 0.5 * (b - a).cross(&(c - a)).norm();
+    }
     sheet.triangles.retain(|triangle| {
-        let [low, high] = boxes[pieces.find(triangle[0]) as usize];
-        (high - low).norm() >= shortest_m
+        let piece = pieces.find(triangle[0]) as usize;
+        let [low, high] = boxes[piece];
+        (high - low).norm() >= shortest_m && areas_m2[piece] >= LEAST_SHARE_OF_SQUARE * shortest_m * shortest_m
     });
 }
 
