@@ -26,6 +26,8 @@ pub(crate) struct Cloud {
     /// The cell of each point, ascending: z, y, x from high bits to low.
     cells: Vec<u64>,
     pub cell_m: f32,
+    /// Of all points.
+    pub share: f64,
 }
 
 const BITS: u32 = 21;
@@ -67,6 +69,7 @@ impl Cloud {
             points: order.iter().map(|&(_, i)| points[i as usize]).collect(),
             cells: order.iter().map(|&(cell, _)| cell).collect(),
             cell_m,
+            share,
         }
     }
 

@@ -98,7 +98,7 @@ pub struct DroppedFrame {
     pub reason: DropReason,
     /// Four in five of its points were closer to the surface; `None` when it met none at all.
     pub residual_mm: Option<f64>,
-    /// How well its points are known along their rays.
+    /// How far its pose's error moves its points across the surface: one standard deviation.
     pub sigma_mm: f64,
 }
 
@@ -128,8 +128,10 @@ pub struct FrameEvidence {
     pub stamp_nanos: i64,
     /// Four in five of its points are closer to the surface; `None` when no other frame saw it.
     pub residual_mm: Option<f64>,
-    /// One standard deviation of its points along their rays, as far as the pose goes.
+    /// How far its pose's error moves its points across the surface: one standard deviation.
     pub sigma_mm: f64,
+    /// How much of it lies on surface that other strokes saw, about 0 to 1.
+    pub held: f64,
 }
 
 /// Something the operator should know.

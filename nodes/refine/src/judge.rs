@@ -18,6 +18,9 @@ pub(crate) struct FrameJudgement {
     pub residual_m: f64,
     /// Memberships in surfels.
     pub members: u32,
+    /// How much of it lies on surface that other strokes saw, about 0 to 1: memberships in such surfels, over what so many
+    /// points have on average.
+    pub held: f64,
     /// The mean of J J^T over its members, J being d distance / d correction.
     pub across: Matrix6<f64>,
     /// What the other strokes tell of this frame's correction.
@@ -43,7 +46,8 @@ pub(crate) fn judge(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> 
     let mut residuals: Vec<Vec<f32>> = vec![Vec::new(); poses.len()];
     let mut information = vec![Matrix6::zeros(); poses.len()];
     let mut across = vec![Matrix6::zeros(); poses.len()];
-    let (mut weights, mut used, mut twice) = (0.0, 0usize, 0usize);
+    let mut twice = vec![0usize; poses.len()];
+    let (mut weights, mut used) = (0.0, 0usize);
     for members in seen.patches.iter().flat_map(|patch| patch.surfels()) {
         for member in members {
             residuals[member.frame as usize].push(member.distance_m.abs());
@@ -53,22 +57,27 @@ pub(crate) fn judge(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> 
             let jacobian = Vector6::from_fn(|i, _| f64::from(member.jacobian[i]));
             across[member.frame as usize].ger(1.0 / weight.max(1e-12), &jacobian, &jacobian, 1.0);
             let others = others_share(problem, members, member);
-            twice += usize::from(others > 0.1);
+            twice[member.frame as usize] += usize::from(others > 0.1);
             information[member.frame as usize].ger(others, &jacobian, &jacobian, 1.0);
         }
     }
     // Each point counts once, however many surfels it belongs to.
     let points: usize = seen.sampled.min(used);
     let once = points as f64 / f64::max(weights, 1.0) / (sigma_m * sigma_m);
-    let frames = residuals.iter_mut().zip(information).zip(across).zip(&seen.frames);
-    let frames = frames.map(|(((sizes, information), across), data)| FrameJudgement {
-        residual_m: upper(sizes),
-        across: across / f64::from(data.members.max(1)),
-        members: data.members,
-        information: information * once,
-    });
-    let seen_twice = twice as f64 / used.max(1) as f64;
-    Judgement { frames: frames.collect(), sigma_m, seen_twice }
+    let usual = used as f64 / seen.sampled.max(1) as f64;
+    let frame = |k: usize| {
+        let points = problem.gathered.frames[problem.frames[k].frame].points.len() as f64;
+        FrameJudgement {
+            residual_m: upper(&residuals[k]),
+            members: seen.frames[k].members,
+            held: twice[k] as f64 / (points * seen.share * usual).max(1.0),
+            across: across[k] / f64::from(seen.frames[k].members.max(1)),
+            information: information[k] * once,
+        }
+    };
+    let frames: Vec<FrameJudgement> = (0..poses.len()).map(frame).collect();
+    let seen_twice = twice.iter().sum::<usize>() as f64 / used.max(1) as f64;
+    Judgement { frames, sigma_m, seen_twice }
 }
 
 /// The share of a surfel that frames of other strokes hold: two groups of weights a and b tell of their offset as much
@@ -86,7 +95,8 @@ fn others_share(problem: &Problem, members: &[Member], own: &Member) -> f64 {
     if all > 0.0 { others / all } else { 0.0 }
 }
 
-fn upper(sizes: &mut [f32]) -> f64 {
+fn upper(sizes: &[f32]) -> f64 {
+    let mut sizes = sizes.to_vec();
     if sizes.is_empty() {
         return f64::NAN;
     }

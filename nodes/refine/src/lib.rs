@@ -98,6 +98,7 @@ mod step;
 mod surfel;
 mod testimony;
 mod tracker;
+mod sentence;
 #[cfg(feature = "node")]
 mod tell;
 mod unknowns;
@@ -110,4 +111,5 @@ pub use evidence::{
     Residual, TrackerEvidence,
 };
 pub use refinement::Refinement;
+pub use sentence::sentence;
 pub use refiner::{RefineError, Refiner};

@@ -63,7 +63,7 @@ pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged:
                 dropped.push(DroppedFrame { stamp_nanos, reason, residual_mm, sigma_mm: sigma_m * 1e3 });
             }
             None => {
-                kept.push(FrameEvidence { stamp_nanos, residual_mm, sigma_mm: sigma_m * 1e3 });
+                kept.push(FrameEvidence { stamp_nanos, residual_mm, sigma_mm: sigma_m * 1e3, held: judgement.held });
                 frames.push(frame);
             }
         }

@@ -22,6 +22,12 @@ pub(crate) const STAGES: [Stage; 5] = [
     Stage { radius_mm: 7.0, spacing_mm: 4.0, points: 80_000, scale_mm: [0.3, 2.0], slow_only: false },
     Stage { radius_mm: 5.0, spacing_mm: 3.0, points: 150_000, scale_mm: [0.2, 1.0], slow_only: false },
 ];
+/// The order of the stages. Frames that were lost on the way down are caught when all others are right already: so it
+/// goes up once more, and to the finest stage only then.
+pub(crate) const SCHEDULE: [usize; 8] = [0, 1, 2, 3, 1, 2, 3, 4];
+/// From here on each stage begins with its widest robust scale, or the lost would not be looked at.
+pub(crate) const SECOND_PASS: usize = 4;
+
 /// The levels of a live tick.
 pub(crate) const LIVE: [Stage; 3] = [
     Stage { radius_mm: 14.0, spacing_mm: 7.0, points: 30_000, scale_mm: [1.0, 5.0], slow_only: false },

@@ -7,7 +7,7 @@ use crate::precondition::spline_block;
 use crate::prior::{Beliefs, Prior};
 use crate::random::word;
 use crate::scene::{Placed, Problem};
-use crate::schedule::{STAGE_SEEDS, STAGES, Stage};
+use crate::schedule::{SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage};
 use crate::spline::Knots;
 use crate::step::{Seen, step};
 use crate::tracker::Smoothed;
@@ -176,7 +176,11 @@ pub(crate) fn run<'a>(
         let prior = prior(config, &noise, &problem);
         let (mut x, mut scale_m, mut taken_back) = (vec![0.0; problem.unknowns.len()], f64::INFINITY, false);
         let mut again = false;
-        for (number, stage) in STAGES.iter().enumerate() {
+        for (number, &stage) in SCHEDULE.iter().enumerate() {
+            if number >= SECOND_PASS {
+                scale_m = f64::INFINITY;
+            }
+            let stage = &STAGES[stage];
             let progress = run_stage(config, &problem, &prior, (number, stage), free, &mut scale_m, &mut x);
             let Some(progress) = progress else { continue };
             taken_back |= progress.taken_back;

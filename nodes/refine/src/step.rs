@@ -34,6 +34,8 @@ pub(crate) struct Seen {
     pub weight: f64,
     /// How many points were looked at.
     pub sampled: usize,
+    /// And what share of all that is.
+    pub share: f64,
 }
 
 /// Each point is a member of several surfels, and surfels are not the surface: their word counts this much.
@@ -48,7 +50,7 @@ pub(crate) fn look(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> S
     let sigma_m = robust_sigma_m(&patches);
     let weight = DATA_SHARE / sigma_m.max(0.5 * plan.scale_m[0]).max(LEAST_SIGMA_M).powi(2);
     let frames = frame_data(&patches, weight, poses.len());
-    Seen { patches, frames, sigma_m, weight, sampled: cloud.points.len() }
+    Seen { patches, frames, sigma_m, weight, sampled: cloud.points.len(), share: cloud.share }
 }
 
 /// Adds one step to the unknowns `x`. Returns what was seen before the step, or `None` when there is no finite step.
