@@ -1,0 +1,260 @@
+//! The camera itself. What the crate v4l does on its own account, and what is done here because of it, was seen on a real
+//! driver: see `tests/vivid`.
+
+use crate::capture::{Device, Exposed, Opener};
+use crate::config::Config;
+use crate::controls::{self, Controls};
+use crate::exposure::Setting;
+use crate::granted::{Difference, Granted, differences, part};
+use crate::host::monotonic_nanos;
+use crate::pixels::{DriverFormat, Layout};
+use crate::stamp::DriverStamp;
+use crate::trouble::Trouble;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::Duration;
+use v4l::buffer::{Flags, Type};
+use v4l::capability::Flags as Ability;
+use v4l::io::mmap::Stream;
+use v4l::io::traits::{CaptureStream as _, Stream as _};
+use v4l::video::Capture as _;
+use v4l::video::capture::Parameters;
+use v4l::{Format, FourCC, Fraction};
+
+/// Something can be read.
+const POLLIN: i16 = 0x001;
+const ENODEV: i32 = 19;
+/// So many pictures that do not come are no chance.
+const SILENT_PICTURES: f64 = 8.0;
+const LEAST_SILENCE_S: f64 = 1.0;
+
+/// Opens a V4L2 camera as it is configured.
+#[derive(Debug, Clone)]
+pub struct V4lOpener {
+    config: Config,
+}
+
+impl V4lOpener {
+    /// For a configuration that was checked.
+    pub fn new(config: Config) -> Self {
+        Self { config }
+    }
+
+    fn camera(&self) -> Result<V4lCamera, Trouble> {
+        let config = &self.config;
+        let device = open(&config.device)?;
+        set_mode(config, &device)?;
+        let controls = Controls::of(&device);
+        controls::apply(config, &device, &controls);
+        let granted = read_back(config, &device, &controls)?;
+        let (allowed, refused) = part(config, differences(config, &granted));
+        if !refused.is_empty() {
+            let allow: Vec<String> = refused.iter().map(|difference| format!("{:?}", difference.name)).collect();
+            let (what, allow) = (sentence(&refused), allow.join(", "));
+            return Err(Trouble::Differs { device: config.device.clone(), what, allow });
+        }
+        let format = DriverFormat::of_fourcc(granted.fourcc).ok_or_else(|| Trouble::Format {
+            device: config.device.clone(),
+            fourcc: String::from_utf8_lossy(&granted.fourcc).into_owned(),
+        })?;
+        let layout = Layout { format, width: granted.width, height: granted.height, stride: granted.stride };
+        let stream = guarded(config, "asking for buffers", || {
+            Stream::with_buffers(&device, Type::VideoCapture, config.buffers)
+        })?;
+        let setting = controls::setting(config, &granted);
+        Ok(V4lCamera {
+            found: found(config, &layout, &granted, &allowed),
+            config: config.clone(),
+            stream: Some(stream),
+            started: false,
+            index_lost: false,
+            device,
+            layout,
+            setting,
+        })
+    }
+}
+
+impl Opener for V4lOpener {
+    fn open(&mut self) -> Result<Box<dyn Device>, Trouble> {
+        Ok(Box::new(self.camera()?))
+    }
+
+    fn silence(&self) -> (Duration, Trouble) {
+        let seconds = (SILENT_PICTURES / self.config.rate_hz).max(LEAST_SILENCE_S);
+        let trouble = Trouble::Silent { device: self.config.device.clone(), seconds: seconds.round() as u32 };
+        (Duration::from_secs_f64(seconds), trouble)
+    }
+}
+
+/// Opens what is a camera.
+pub(crate) fn open(path: &Path) -> Result<v4l::Device, Trouble> {
+    let no_camera = |reason: &str| Trouble::NoCamera { device: path.to_owned(), reason: reason.to_owned() };
+    if path.as_os_str().as_encoded_bytes().contains(&0) {
+        return Err(no_camera("a name has no zero byte"));
+    }
+    let device = v4l::Device::with_path(path).map_err(|error| Trouble::opening(path, "opening", &error))?;
+    let caps = calmly(|| device.query_caps()).map_err(|error| Trouble::opening(path, "asking what it is", &error))?;
+    if !caps.capabilities.contains(Ability::VIDEO_CAPTURE) {
+        return Err(no_camera("it takes no pictures, or only in several planes"));
+    }
+    if !caps.capabilities.contains(Ability::STREAMING) {
+        return Err(no_camera("it does not stream"));
+    }
+    Ok(device)
+}
+
+/// The crate panics on what a newer kernel, or a careless driver, says. That is no reason to die.
+pub(crate) fn calmly<T>(ask: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
+    let says = "the driver says what the library v4l does not understand";
+    catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| Err(io::Error::other(says)))
+}
+
+fn guarded<T>(config: &Config, doing: &'static str, ask: impl FnOnce() -> io::Result<T>) -> Result<T, Trouble> {
+    calmly(ask).map_err(|error| Trouble::opening(&config.device, doing, &error))
+}
+
+/// Size and format first: setting them changes the rate.
+fn set_mode(config: &Config, device: &v4l::Device) -> Result<(), Trouble> {
+    // A format that was read back carries the stride of another width.
+    let format = Format::new(config.width, config.height, FourCC::new(&config.format.fourcc()));
+    guarded(config, "setting the format", || device.set_format(&format))?;
+    let whole = config.rate_hz.fract() == 0.0;
+    let (numerator, scale) = if whole { (1, 1.0) } else { (1000, 1000.0) };
+    let interval = Fraction::new(numerator, (config.rate_hz * scale).round() as u32);
+    // A camera with one rate refuses; what it has is read back and compared.
+    let _ = calmly(|| device.set_params(&Parameters::new(interval)));
+    Ok(())
+}
+
+fn read_back(config: &Config, device: &v4l::Device, controls: &Controls) -> Result<Granted, Trouble> {
+    let format = guarded(config, "reading the format back", || device.format())?;
+    let rate = |interval: Fraction| f64::from(interval.denominator) / f64::from(interval.numerator.max(1));
+    let rate_hz = calmly(|| device.params()).ok().map(|params| rate(params.interval)).filter(|rate| *rate > 0.0);
+    Ok(Granted {
+        fourcc: format.fourcc.repr,
+        width: format.width,
+        height: format.height,
+        stride: format.stride,
+        rate_hz,
+        exposure_us: controls::exposure_us(device),
+        gain: controls::read(device, controls::GAIN),
+        white_balance_k: controls::read(device, controls::WHITE_BALANCE),
+        controls: controls.values(device, config.controls.keys()),
+    })
+}
+
+fn sentence(differences: &[Difference]) -> String {
+    differences.iter().map(Difference::to_string).collect::<Vec<_>>().join("; ")
+}
+
+fn found(config: &Config, layout: &Layout, granted: &Granted, allowed: &[Difference]) -> String {
+    let Layout { format, width, height, stride } = layout;
+    let mut text = format!("{}: {format} {width}x{height}, rows of {stride} bytes", config.device.display());
+    if let Some(rate_hz) = granted.rate_hz {
+        text += &format!(", {rate_hz:.2} Hz");
+    }
+    match (config.exposure_us, granted.exposure_us) {
+        (Some(_), Some(us)) => text += &format!(", exposed for {us} us"),
+        (Some(us), None) => text += &format!(", exposed for {us} us, as the configuration has it"),
+        (None, _) => text += ", exposure left to the camera: set exposure_us, or stamps are off by half of it",
+    }
+    if let Some(gain) = granted.gain {
+        text += &format!(", gain {gain}");
+    }
+    if !allowed.is_empty() {
+        text += &format!(" ({})", sentence(allowed));
+    }
+    text
+}
+
+struct V4lCamera {
+    config: Config,
+    device: v4l::Device,
+    stream: Option<Stream<'static>>,
+    layout: Layout,
+    setting: Setting,
+    found: String,
+    /// The first picture starts the stream.
+    started: bool,
+    /// The stream does not know which buffer it holds.
+    index_lost: bool,
+}
+
+impl V4lCamera {
+    /// Something waits to be fetched.
+    fn waits(&self, stream: &Stream<'static>, wait: Duration) -> io::Result<bool> {
+        let millis = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
+        Ok(stream.handle().poll(POLLIN, millis)? > 0)
+    }
+
+    fn fetch(&mut self, wait: Duration) -> io::Result<Option<Exposed>> {
+        let Some(mut stream) = self.stream.take() else { return Ok(None) };
+        let fetched = calmly(|| self.fetch_from(&mut stream, wait));
+        self.stream = Some(stream);
+        fetched
+    }
+
+    fn fetch_from(&mut self, stream: &mut Stream<'static>, wait: Duration) -> io::Result<Option<Exposed>> {
+        // Asked before `next`, which hands a buffer back first: when it then fails, it has none to hand back.
+        if self.started && !self.waits(stream, wait)? {
+            return Ok(None);
+        }
+        if self.index_lost {
+            // Its pixels cannot be had, but the next ones can.
+            stream.dequeue()?;
+            self.index_lost = false;
+            return Ok(None);
+        }
+        if !self.started {
+            self.started = true;
+            stream.set_timeout(wait);
+        }
+        self.index_lost = true;
+        let (buffer, meta) = stream.next()?;
+        self.index_lost = false;
+        let arrival_nanos = monotonic_nanos();
+        let filled = buffer.get(..meta.bytesused as usize).unwrap_or(buffer);
+        let nanos = meta.timestamp.sec * 1_000_000_000 + meta.timestamp.usec * 1000;
+        Ok(Some(Exposed {
+            bytes: filled.to_vec(),
+            layout: self.layout,
+            stamp: DriverStamp { nanos, flags: u32::from(meta.flags), arrival_nanos },
+            sequence: meta.sequence,
+            damaged: meta.flags.contains(Flags::ERROR),
+            setting: self.setting,
+        }))
+    }
+}
+
+impl Device for V4lCamera {
+    fn found(&self) -> String {
+        self.found.clone()
+    }
+
+    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed>, Trouble> {
+        use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+        match self.fetch(wait) {
+            Err(error) if matches!(error.kind(), Interrupted | TimedOut | WouldBlock) => Ok(None),
+            fetched => fetched.map_err(|error| Trouble::streaming(&self.config.device, &error)),
+        }
+    }
+
+    fn set(&mut self, setting: Setting) -> Result<Setting, Trouble> {
+        self.setting = controls::set(&self.config, &self.device, setting, self.setting);
+        Ok(self.setting)
+    }
+}
+
+impl Drop for V4lCamera {
+    fn drop(&mut self) {
+        let Some(mut stream) = self.stream.take() else { return };
+        // The crate stops the stream when it is dropped, and panics when that fails: a panic within a panic would end
+        // the process, so a stream that cannot be stopped is given up with its memory.
+        match stream.stop() {
+            Err(error) if error.raw_os_error() != Some(ENODEV) => std::mem::forget(stream),
+            _ => drop(calmly(|| Ok(drop(stream)))),
+        }
+    }
+}

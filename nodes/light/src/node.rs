@@ -1,0 +1,33 @@
+//! The wiring: the operator's phase comes, the lights are switched.
+
+use crate::{Config, Lights};
+use kit::Node;
+use serial_line::News;
+use wire::Phase;
+
+/// Keeps the lights as the phase wants them until it is told to stop.
+pub fn run(mut node: Node) -> anyhow::Result<()> {
+    let config: Config = node.spec().config()?;
+    config.check()?;
+    let lights = Lights::start(config, tell);
+    node.ready()?;
+    let mut phase = Phase::End;
+    while node.wait() {
+        let now = node.phase().map_or(Phase::Aim, |run| run.header.phase);
+        if now != phase {
+            phase = now;
+            lights.begin(phase);
+        }
+    }
+    // They go out before the node leaves.
+    drop(lights);
+    node.close()
+}
+
+fn tell(news: News) {
+    match news {
+        News::Streaming(found) => tracing::info!("{found}"),
+        News::Trouble(trouble) => tracing::error!("{trouble}"),
+        News::Noisy(sentence) => tracing::warn!("{sentence}"),
+    }
+}

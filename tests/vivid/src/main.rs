@@ -1,0 +1,35 @@
+//! Runs inside the machine that `tests/vivid/run` boots: the camera node's code before the kernel's driver of test
+//! pictures, vivid. `v4l2-ctl` is the independent hand that turns vivid's knobs.
+//!
+//! What is not asserted, because vivid does not keep to it under emulation: exact rates, and numbers without gaps.
+
+mod bench;
+mod faults;
+mod pictures;
+mod settings;
+
+use bench::Bench;
+
+type Proof = fn(&Bench) -> anyhow::Result<()>;
+
+const PROOFS: &[(&str, Proof)] = &[
+    ("the camera is listed with its formats, rates and controls", settings::is_listed),
+    ("what the driver replaces in silence is refused", settings::substitutes_are_refused),
+    ("what is no camera, and what is not there, is named", settings::what_is_no_camera),
+    ("a camera that streams is busy for others", settings::is_busy),
+    ("the pixels are the test picture's, in every format", pictures::are_the_pattern),
+    ("stamps are the middle of exposure on the system clock", pictures::are_stamped),
+    ("the newest picture is held, however slow the node is", pictures::are_fresh),
+    ("dropped and damaged buffers are counted", faults::dropped_and_damaged),
+    ("a stream that breaks is started again", faults::broken_stream),
+    ("an unplugged camera is opened again by its name", faults::unplugged),
+];
+
+fn main() -> anyhow::Result<()> {
+    let bench = Bench::new()?;
+    for (claim, proof) in PROOFS {
+        proof(&bench).map_err(|error| error.context(format!("NOT PROVEN: {claim}")))?;
+        println!("proven: {claim}");
+    }
+    Ok(())
+}
