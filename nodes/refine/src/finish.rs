@@ -55,7 +55,7 @@ pub(crate) fn finish(
     let wide_after = look(&problem, &poses, &wide(config.seed));
     let held = strokes::hold(&wide_after.patches);
     notice_solution(&solution, &mut notices);
-    notice_surface(&problem, &wide_after, held, &mut notices);
+    notice_surface(&problem, &solution, held, &mut notices);
     let kept = keep_better(&before, &after, &mut notices);
     let (problem, x, judged, noise) =
         if kept { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };

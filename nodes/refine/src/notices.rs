@@ -1,11 +1,9 @@
 //! When something is worth saying, and in which words.
 
 use crate::evidence::Notice;
-use crate::guard::moved;
 use crate::guard::strokes::{Hold, Strokes};
 use crate::scene::Problem;
 use crate::solver::Solution;
-use crate::step::Seen;
 
 /// Parts of a thing that was moved stand apart by so many times the residuals (noise alone: 2) ...
 const APART: f64 = 4.0;
@@ -23,12 +21,12 @@ pub(crate) fn notice_solution(solution: &Solution, notices: &mut Vec<Notice>) {
 }
 
 /// What the surface itself shows: that it holds too little, or that the thing was moved.
-pub(crate) fn notice_surface(problem: &Problem, seen: &Seen, hold: Hold, notices: &mut Vec<Notice>) {
+pub(crate) fn notice_surface(problem: &Problem, solution: &Solution, hold: Hold, notices: &mut Vec<Notice>) {
     if hold.directions < 6 {
         notices.push(holds_little(hold));
     }
-    let Some(divided) = moved::divide(problem, &seen.patches) else { return };
-    if divided.apart_m > LEAST_APART_M.max(APART * seen.sigma_m) {
+    let Some((divided, sigma_m)) = solution.moved else { return };
+    if divided.apart_m > LEAST_APART_M.max(APART * sigma_m) {
         let stamp_nanos = problem.start_nanos() + (divided.t_s * 1e9) as i64;
         notices.insert(0, Notice::ThingMoved { stamp_nanos, apart_mm: divided.apart_m * 1e3 });
     }

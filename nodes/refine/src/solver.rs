@@ -3,13 +3,14 @@
 use crate::Config;
 use crate::gather::{Frame, Gathered};
 use crate::guard::coloured;
+use crate::guard::moved::{self, Divided};
 use crate::precondition::spline_block;
 use crate::prior::{Beliefs, Prior};
 use crate::random::word;
 use crate::scene::{Placed, Problem};
-use crate::schedule::{SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage};
+use crate::schedule::{SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage, wide};
 use crate::spline::Knots;
-use crate::step::{Seen, step};
+use crate::step::{Seen, look, step};
 use crate::tracker::Smoothed;
 use crate::unknowns::{Free, Row, Unknowns};
 use nalgebra::{Isometry3, Vector3};
@@ -144,6 +145,8 @@ pub(crate) fn excess(problem: &Problem, prior: &Prior, seen: &Seen, x: &[f64]) -
 pub(crate) struct Solution {
     pub x: Vec<f64>,
     pub free: Free,
+    /// The most suspicious moment after the first pass, and the residuals then.
+    pub moved: Option<(Divided, f64)>,
     pub noise: Noise,
     /// See [`coloured`]; `None` when too little is held.
     pub excess: Option<f64>,
@@ -175,10 +178,15 @@ pub(crate) fn run<'a>(
         let problem = problem(config, &noise, gathered, smoothed, frames, body_from_camera);
         let prior = prior(config, &noise, &problem);
         let (mut x, mut scale_m, mut taken_back) = (vec![0.0; problem.unknowns.len()], f64::INFINITY, false);
-        let mut again = false;
+        let (mut again, mut moved) = (false, None);
         for (number, &stage) in SCHEDULE.iter().enumerate() {
             if number >= SECOND_PASS {
                 scale_m = f64::INFINITY;
+            }
+            if number == SECOND_PASS {
+                // The second pass brings together even what was moved: it is looked for before.
+                let seen = look(&problem, &problem.poses(&x), &wide(config.seed));
+                moved = moved::divide(&problem, &seen.patches).map(|divided| (divided, seen.sigma_m));
             }
             let stage = &STAGES[stage];
             let progress = run_stage(config, &problem, &prior, (number, stage), free, &mut scale_m, &mut x);
@@ -193,7 +201,7 @@ pub(crate) fn run<'a>(
             }
         }
         if !again {
-            return (problem, Solution { x, free, noise, excess: excess_found, taken_back });
+            return (problem, Solution { x, free, moved, noise, excess: excess_found, taken_back });
         }
         noise = coloured;
     }
