@@ -2,8 +2,8 @@
 
 use crate::operator::Order;
 use crate::{
-    cluster_cmd, compare_cmd, demo, echo, hz, live, model_cmd, record_cmd, replay_cmd, scan, stripe_cmd, surface_cmd,
-    top, topics, up,
+    cluster_cmd, compare_cmd, demo, echo, hz, live, model_cmd, record_cmd, refine_cmd, replay_cmd, scan, stripe_cmd,
+    surface_cmd, top, topics, up,
 };
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
@@ -27,6 +27,9 @@ pub enum Command {
     /// Make a model from a recording or a scan folder.
     #[command(after_help = model_cmd::HELP)]
     Model(model_cmd::Args),
+    /// Refine the camera's way of a recording, and tell what is known of it.
+    #[command(after_help = refine_cmd::HELP)]
+    Refine(refine_cmd::Args),
     /// Start a rig from a launch file, and stop it with Ctrl-C.
     #[command(after_help = up::HELP)]
     Up(up::Args),
@@ -127,6 +130,7 @@ pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
         Command::Demo(args) => demo::run(&args),
         Command::Model(args) => model_cmd::run(&args),
+        Command::Refine(args) => refine_cmd::run(&args),
         Command::Up(args) => up::run(&args),
         Command::Scan { order, rig } => scan::run(order, &rig),
         Command::Top(rig) => top::run(&rig),

@@ -48,6 +48,7 @@ pub mod planned;
 mod process;
 mod record_cmd;
 mod recorded;
+mod refine_cmd;
 mod replay_cmd;
 pub mod run;
 pub mod running;

@@ -30,7 +30,7 @@ pub struct Args {
     pub sets: Vec<String>,
 }
 
-const FILES: [(&str, &str); 2] = [
+pub(crate) const FILES: [(&str, &str); 2] = [
     ("launch/replay.toml", include_str!("../replay.toml")),
     ("launch/pipeline.toml", include_str!("../pipeline.toml")),
 ];

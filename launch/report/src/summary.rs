@@ -1,6 +1,6 @@
 //! What is told of a run: plain numbers, as they stand in report.json.
 
-use crate::ColourError;
+use crate::{ColourError, StatedError};
 use geometry::Comparison;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,8 @@ pub struct Report {
     pub aligned: Option<Aligned>,
     /// What refinement has done.
     pub refinement: Option<Refined>,
+    /// What the surface says of its own error, against the error that it has.
+    pub stated: Option<StatedError>,
     /// The colours against the truth's albedo.
     pub colour: Option<ColourError>,
     /// What failed, in sentences.

@@ -2,7 +2,7 @@
 
 use crate::{Report, page};
 use formats::mesh::LoadedMesh;
-use geometry::MeshError;
+use geometry::{MeshError, TriangleMesh};
 use std::io::Write as _;
 use std::path::Path;
 
@@ -11,6 +11,8 @@ use std::path::Path;
 pub struct Exhibits<'a> {
     /// What came out, in the world (see [`crate::painted`]).
     pub model: Option<&'a LoadedMesh>,
+    /// The surface with the standard deviation that each vertex states, in metres.
+    pub stated: Option<(&'a TriangleMesh, &'a [f32])>,
     /// What would have come out without refinement.
     pub before: Option<&'a LoadedMesh>,
     /// What was scanned, in the same frame.

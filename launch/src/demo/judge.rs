@@ -36,7 +36,11 @@ pub fn judge(
     };
     let compared = Instant::now();
     let bench = Bench::new(known, harvest, truth)?;
-    let onto = bench.shape(harvest, &mut report);
+    let (onto, laid) = bench.shape(harvest, &mut report);
+    let sigma_m = harvest.mesh.as_ref().map_or(&[][..], |mesh| &mesh.sigma_m);
+    if let Some(laid) = &laid {
+        report.stated = report::stated_error(laid, sigma_m, &bench.truth.mesh)?;
+    }
     let before = bench.refinement(plan, harvest, &mut report);
     if let Some(before) = &before {
         formats::mesh::write_ply(&out.join("before.ply"), &before.mesh)?;
@@ -49,6 +53,7 @@ pub fn judge(
     let exhibits = Exhibits {
         model: model.as_ref().filter(|model| model.mesh.check().is_ok()),
         before: before.as_ref().filter(|before| before.mesh.check().is_ok()),
+        stated: laid.as_ref().filter(|_| report.stated.is_some()).map(|mesh| (mesh, sigma_m)),
         truth: Some(&bench.truth),
     };
     report.write_html(&out.join("report.html"), &exhibits)?;
@@ -73,22 +78,23 @@ impl Bench {
         Ok(Self { truth, seen, seed: known.seed })
     }
 
-    /// The surface where it stands, and laid onto the truth. Returns the motion for that.
-    fn shape(&self, harvest: &Harvest, report: &mut Report) -> Isometry3<f64> {
+    /// The surface where it stands, and laid onto the truth. Returns the motion for that, and the surface after it.
+    fn shape(&self, harvest: &Harvest, report: &mut Report) -> (Isometry3<f64>, Option<TriangleMesh>) {
         let compared = || -> Result<_> {
             let mesh = harvest.mesh.as_ref().context("there is no surface to compare")?;
             let mut mesh = TriangleMesh::from(mesh);
             let comparison = geometry::compare(&mesh, &self.truth.mesh, Some(&self.seen), self.seed)?;
-            Ok((comparison, lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?))
+            let (onto, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?;
+            Ok((comparison, onto, aligned, mesh))
         };
         match compared() {
-            Ok((comparison, (onto, aligned))) => {
+            Ok((comparison, onto, aligned, laid)) => {
                 (report.comparison, report.aligned) = (Some(comparison), Some(aligned));
-                onto
+                (onto, Some(laid))
             }
             Err(error) => {
                 report.failures.push(format!("{error:#}"));
-                Isometry3::identity()
+                (Isometry3::identity(), None)
             }
         }
     }

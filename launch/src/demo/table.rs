@@ -35,6 +35,11 @@ pub fn print(report: &Report, out: &Path) -> Result<()> {
         row("laid onto the truth", format!("rms {:.3} mm, median {:.3}, 95 % {:.3}", d.rms_mm, d.median_mm, d.p95_mm));
         row("moved for that", format!("{:.2} mm, {:.2} degrees", aligned.moved_mm, aligned.turned_deg));
     }
+    if let Some(stated) = &report.stated {
+        let [one, two] = [stated.within_one, stated.within_two].map(|share| 100.0 * share);
+        let median = stated.median_sigma_mm;
+        row("as its own sigma says", format!("{one:.0} % within 1, {two:.0} % within 2; median sigma {median:.3} mm"));
+    }
     if let Some(refined) = &report.refinement {
         if let Some(without) = &refined.without {
             let d = &without.comparison.model_to_truth;

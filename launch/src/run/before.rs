@@ -17,7 +17,8 @@ pub fn surface(plan: &Plan, scans: &[Scan]) -> Result<TriangleMesh> {
     Ok(TriangleMesh::from(&surfer.final_mesh()))
 }
 
-fn config<C: DeserializeOwned>(plan: &Plan, kind: &str) -> Result<C> {
+/// The effective configuration of the plan's only node of a kind.
+pub fn config<C: DeserializeOwned>(plan: &Plan, kind: &str) -> Result<C> {
     let node = plan.nodes.iter().find(|node| node.kind == kind).with_context(|| format!("no node {kind}"))?;
     Ok(C::deserialize(&node.config)?)
 }

@@ -2,7 +2,7 @@
 //! and for good at the end, the whole scan goes again as the next revision, on a better way of the camera.
 
 use crate::worker::{Answer, Worker};
-use crate::{Config, Evidence, Refinement, tell};
+use crate::{Config, Evidence, Refinement, sentence, tell};
 use anyhow::Context as _;
 use kit::{Input, Node, Output};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -259,7 +259,7 @@ impl Course {
 fn say(node: &mut Node, evidence: &Evidence) {
     evidence.refused.iter().for_each(|refused| node.refuse(&refused.reason, refused.count));
     node.refuse("frame that fits nowhere or is held by nothing", evidence.dropped.len() as u64);
-    evidence.notices.iter().for_each(|notice| tracing::warn!("{}", tell::sentence(notice)));
+    evidence.notices.iter().for_each(|notice| tracing::warn!("{}", sentence(notice)));
     tracing::info!(
         "points stand {:.3} mm off their surface, {:.3} mm before; clock {:+.1} ms; {} frames kept, {} dropped",
         evidence.residual.after_mm,

@@ -66,6 +66,9 @@ fn accuracy(report: &Report, end_mm: f64) -> String {
     if let Some(aligned) = &report.aligned {
         text.push_str(&tables::standing(aligned, report.comparison.as_ref()));
     }
+    if let Some(stated) = &report.stated {
+        text.push_str(&tables::stated(stated));
+    }
     if let Some(refined) = &report.refinement {
         text.push_str(&tables::refined(refined));
     }

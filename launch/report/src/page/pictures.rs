@@ -5,7 +5,7 @@ use crate::albedo::albedo;
 use crate::data_uri::png_uri;
 use crate::{Exhibits, PageError, View, error_map, four_views, render};
 use formats::mesh::LoadedMesh;
-use geometry::TriangleMesh;
+use geometry::{METRES_PER_MM, TriangleMesh};
 use image::RgbaImage;
 
 const WIDTH: u32 = 420;
@@ -13,8 +13,8 @@ const HEIGHT: u32 = 340;
 /// Albedo of a surface without colours.
 const PLASTER: [f32; 3] = [0.62, 0.60, 0.56];
 
-/// The pictures, row by row: truth, before refinement, model, shape alone, error map; what is missing is left out. The views are chosen by the
-/// truth, or by the model when there is none.
+/// The pictures, row by row: truth, before refinement, model, shape alone, error map, expected error; what is missing is
+/// left out. The views are chosen by the truth, or by the model when there is none.
 pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError> {
     let Some(framing) = exhibits.truth.or(exhibits.model) else { return Ok(String::new()) };
     let views = four_views(&framing.mesh, WIDTH, HEIGHT);
@@ -34,6 +34,11 @@ pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError
             let text = "Distance of the model from the truth: blue is inside, red outside.";
             rows.push_str(&row("Error", &format!("{text}{}", chart::legend(end_mm)), &map)?);
         }
+    }
+    if let Some((mesh, sigma_m)) = exhibits.stated {
+        let caption =
+            "What the scan itself says of its error: one standard deviation, on the red half of the same scale.";
+        rows.push_str(&row("Expected error", caption, &stated_pictures(mesh, sigma_m, &views, end_mm))?);
     }
     Ok(format!("<section class=\"gallery\">{rows}</section>"))
 }
@@ -58,6 +63,15 @@ fn painted(surface: &LoadedMesh, views: &[View]) -> Vec<RgbaImage> {
 
 fn plaster(mesh: &TriangleMesh, views: &[View]) -> Vec<RgbaImage> {
     views.iter().map(|view| render(mesh, view, |_, _| PLASTER)).collect()
+}
+
+fn stated_pictures(mesh: &TriangleMesh, sigma_m: &[f32], views: &[View], end_mm: f64) -> Vec<RgbaImage> {
+    let sigma_mm = |i: u32| sigma_m.get(i as usize).map_or(0.0, |sigma| f64::from(*sigma) / METRES_PER_MM);
+    let colour = |triangle: u32, weights: [f64; 3]| {
+        let corners = mesh.triangles[triangle as usize].map(sigma_mm);
+        error_map::colour(corners.iter().zip(weights).map(|(d, w)| d * w).sum(), end_mm)
+    };
+    views.iter().map(|view| render(mesh, view, colour)).collect()
 }
 
 fn error_pictures(

@@ -1,7 +1,7 @@
 //! The numbers, as tables and as the row of figures at the head of the page.
 
 use super::text::{count, escape, known, number, percent};
-use crate::{Aligned, Refined, Report, Stage};
+use crate::{Aligned, Refined, Report, Stage, StatedError};
 use geometry::{Comparison, Completeness};
 use std::fmt::Write as _;
 
@@ -80,6 +80,19 @@ pub fn standing(aligned: &Aligned, as_it_stands: Option<&Comparison>) -> String 
             ("moved by", format!("{} mm", number(aligned.moved_mm))),
             ("turned by", format!("{} degrees", number(aligned.turned_deg))),
             ("root mean square where it stood", stood.unwrap_or_default()),
+        ],
+    )
+}
+
+/// How honest the surface's own sigmas are.
+pub fn stated(stated: &StatedError) -> String {
+    facts(
+        "What the surface says of its own error",
+        &[
+            ("standard deviation, median", format!("{} mm", number(stated.median_sigma_mm))),
+            ("closer to the truth than one of it (68 % if it is honest)", percent(stated.within_one)),
+            ("closer than two (95 %)", percent(stated.within_two)),
+            ("vertices that state one", count(stated.vertices as u64)),
         ],
     )
 }
