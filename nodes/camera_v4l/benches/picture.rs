@@ -38,7 +38,7 @@ fn bench(c: &mut Criterion) {
     };
     let reading = [ClockReading { before: 0, system: 0, after: 100 }];
     for format in DriverFormat::ALL {
-        let (mut camera, exposed) = (CameraV4l::new(Config::default(), laser.clone()).unwrap(), exposed(format));
+        let (mut camera, exposed) = (CameraV4l::new(Config::default(), laser).unwrap(), exposed(format));
         c.bench_function(&format!("1280x1024 {format}"), |b| {
             b.iter_batched(
                 || exposed.clone(),

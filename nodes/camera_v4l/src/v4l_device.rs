@@ -183,12 +183,6 @@ struct V4lCamera {
 }
 
 impl V4lCamera {
-    /// Something waits to be fetched.
-    fn waits(&self, stream: &Stream<'static>, wait: Duration) -> io::Result<bool> {
-        let millis = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
-        Ok(stream.handle().poll(POLLIN, millis)? > 0)
-    }
-
     fn fetch(&mut self, wait: Duration) -> io::Result<Option<Exposed>> {
         let Some(mut stream) = self.stream.take() else { return Ok(None) };
         let fetched = calmly(|| self.fetch_from(&mut stream, wait));
@@ -198,7 +192,8 @@ impl V4lCamera {
 
     fn fetch_from(&mut self, stream: &mut Stream<'static>, wait: Duration) -> io::Result<Option<Exposed>> {
         // Asked before `next`, which hands a buffer back first: when it then fails, it has none to hand back.
-        if self.started && !self.waits(stream, wait)? {
+        let millis = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
+        if self.started && stream.handle().poll(POLLIN, millis)? == 0 {
             return Ok(None);
         }
         if self.index_lost {
@@ -254,7 +249,12 @@ impl Drop for V4lCamera {
         // the process, so a stream that cannot be stopped is given up with its memory.
         match stream.stop() {
             Err(error) if error.raw_os_error() != Some(ENODEV) => std::mem::forget(stream),
-            _ => drop(calmly(|| Ok(drop(stream)))),
+            _ => {
+                let _ = calmly(move || {
+                    drop(stream);
+                    Ok(())
+                });
+            }
         }
     }
 }

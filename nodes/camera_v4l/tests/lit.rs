@@ -84,7 +84,7 @@ fn laser_and_lamp_in_turn_are_told_by_the_picture_in_every_format() {
         for peaks_per in [PeaksPer::Row, PeaksPer::Column] {
             let mut judge = LightJudge::default();
             let mut wrong = 0;
-            for k in 0..80 {
+            for k in 0..60 {
                 let frame = picture(k, HEIGHT, format, peaks_per);
                 let told = judge.judge(Phase::Both, &look(&frame, &laser(peaks_per), &config).unwrap(), &config);
                 let lamp = k.is_multiple_of(LAMP_EVERY);
@@ -111,7 +111,7 @@ fn a_picture_in_which_the_light_was_switched_is_not_taken_for_colour() {
             let frame = picture(k, rows, PixelFormat::Rgb8, PeaksPer::Row);
             let told = judge.judge(Phase::Both, &look(&frame, &laser(PeaksPer::Row), &config).unwrap(), &config);
             if k > 24 && torn {
-                assert!(!(told.lamp && !told.laser), "switched at row {switch}, picture {k}: {told:?}");
+                assert!(told.laser || !told.lamp, "switched at row {switch}, picture {k}: {told:?}");
             }
         }
     }
