@@ -19,11 +19,13 @@ pub struct Sample {
     pub position_m: [f32; 3],
     sigma_steps: u32,
     to_sensor_steps: [i16; 3],
+    /// Of the stamp of the picture that it is from.
+    picture: u16,
 }
 
 impl Sample {
     /// `None` when anything in it is not finite.
-    pub fn new(point: &ScanPoint) -> Option<Self> {
+    pub fn new(point: &ScanPoint, picture: u16) -> Option<Self> {
         let ScanPoint { position_m, to_sensor, sigma_m, .. } = *point;
         let sum = position_m[0] + position_m[1] + position_m[2] + to_sensor[0] + to_sensor[1] + to_sensor[2] + sigma_m;
         // One that is not finite makes the sum so; a finite sum that overflows is refused as well, rightly.
@@ -31,6 +33,7 @@ impl Sample {
             position_m,
             sigma_steps: (sigma_m / SIGMA_STEP_M).clamp(0.0, SIGMA_STEPS_MOST) as u32,
             to_sensor_steps: to_sensor.map(|c| (c * STEPS_PER_UNIT) as i16),
+            picture,
         })
     }
 }
@@ -42,6 +45,10 @@ pub struct Ball {
     pub centre_m: [f32; 3],
     /// How many points it has.
     pub count: u32,
+    /// From how many pictures they came: so many of their errors are independent. It is not lowered again when points leave
+    /// for a younger ball.
+    pub pictures: u32,
+    latest_picture: u16,
     /// The list of its points that may yet go to another ball (see `movable`).
     pub movable: u32,
     /// True when it is on the list of balls that changed.
@@ -73,6 +80,8 @@ impl Ball {
         Self {
             centre_m,
             count: 0,
+            pictures: 0,
+            latest_picture: 0,
             movable,
             changed: false,
             sent: false,
@@ -86,6 +95,9 @@ impl Ball {
     /// Takes a point in.
     pub fn add(&mut self, sample: &Sample, steps_per_metre: f32) {
         self.sum(sample, steps_per_metre, 1);
+        if self.pictures == 0 || self.latest_picture != sample.picture {
+            (self.pictures, self.latest_picture) = (self.pictures + 1, sample.picture);
+        }
         self.count += 1;
         self.variance += u64::from(sample.sigma_steps) * u64::from(sample.sigma_steps);
     }

@@ -90,8 +90,9 @@ impl BallClusterer {
         {
             self.state = State::new(self.radius_m(scan, first));
         }
+        let picture = fold(scan.header.stamp_nanos);
         for point in scan.points.iter() {
-            match Sample::new(point) {
+            match Sample::new(point, picture) {
                 None => self.not_finite += 1,
                 Some(sample) if !self.state.grid.reaches(sample.position_m) => self.out_of_range += 1,
                 Some(sample) => self.state.insert(sample),
@@ -164,6 +165,11 @@ impl BallClusterer {
         refuse(&mut refused, "point of an older scan or revision", std::mem::take(&mut self.of_older_scan));
         refused
     }
+}
+
+/// Tells a picture from the one before and behind.
+fn fold(stamp_nanos: i64) -> u16 {
+    (stamp_nanos ^ (stamp_nanos >> 16) ^ (stamp_nanos >> 32)) as u16
 }
 
 fn refuse(refused: &mut Vec<Refusal>, reason: &str, count: u64) {

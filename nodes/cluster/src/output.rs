@@ -28,7 +28,9 @@ fn point(state: &State, id: u32, least_points: u32, near: &mut Vec<u32>) -> Clou
     let [xx, yy, zz, xy, xz, yz] = averages.covariance_m2;
     let covariance = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let spread_squared = normal.dot(&(covariance * normal)).max(0.0);
-    let variance = spread_squared.max(averages.variance_m2) / f64::from(ball.count.max(1));
+    // Points of one picture err together, with its pose.
+    let independent = ball.pictures.min(ball.count).max(1);
+    let variance = spread_squared.max(averages.variance_m2) / f64::from(independent);
     CloudPoint {
         position_m: [0, 1, 2].map(|axis| (f64::from(ball.centre_m[axis]) + averages.offset_m[axis]) as f32),
         normal: normal.map(|c| c as f32).into(),

@@ -154,19 +154,20 @@ fn solve(rows: &[Row]) -> Option<(Vector6<f64>, Vector6<f64>)> {
     Some((inverse, cholesky.solve(&Vector6::from(right.map(f64::from)))))
 }
 
-/// Of the centre, in reaches: from the residuals, or from what the samples state where that is more (Joint errors of a
-/// pose move neighbours together and do not show in the residuals).
+/// Of the centre, in reaches: from the residuals, or from what the samples state where that is more. The errors that samples
+/// state are taken to move neighbours together, as those of a pose do: neighbours come from the same pictures, and what
+/// they have in common shows in no residual.
 fn sigma(rows: &[Row], inverse: &Vector6<f64>, solution: &Vector6<f64>) -> f32 {
     let inner = |basis: &[f32; 6], c: &Vector6<f64>| (0..6).map(|k| f64::from(basis[k]) * c[k]).sum::<f64>();
     let (mut influence, mut stated, mut residual, mut weight) = (0.0, 0.0, 0.0, 0.0);
     for row in rows {
         let (w, difference) = (f64::from(row.weight), f64::from(row.height) - inner(&row.basis, solution));
-        let moves = (w * inner(&row.basis, inverse)).powi(2);
-        influence += moves;
-        stated += moves * f64::from(row.variance);
+        let moves = w * inner(&row.basis, inverse);
+        influence += moves * moves;
+        stated += moves * f64::from(row.variance.max(0.0)).sqrt();
         residual += w * difference * difference;
         weight += w;
     }
     let free = rows.len() as f64 / (rows.len() as f64 - 6.0);
-    (influence * free * residual / weight).max(stated).sqrt() as f32
+    (influence * free * residual / weight).max(stated * stated).sqrt() as f32
 }

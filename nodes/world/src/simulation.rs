@@ -39,7 +39,7 @@ impl HandEyeError {
     fn check(&self) -> Result<(), SimulationError> {
         let limits = [("translation_mm", &self.translation_mm, 100.0), ("rotation_deg", &self.rotation_deg, 30.0)];
         for (key, values, most) in limits {
-            if let Some(&value) = values.iter().find(|value| !(value.abs() <= most)) {
+            if let Some(&value) = values.iter().find(|value| !(-most..=most).contains(*value)) {
                 return Err(SimulationError::HandEye { key, value, most });
             }
         }
