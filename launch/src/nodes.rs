@@ -49,6 +49,49 @@ pub const KINDS: &[Kind] = &[
         ..PLAIN
     },
     Kind {
+        name: "camera_v4l",
+        about: "pictures from a camera on this machine, with the time of their exposure",
+        source: true,
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| vec![topic::frame(&node.instance).key, topic::colour(&node.instance).key],
+        defaults: defaults::<camera_v4l::Config>,
+        check: |config| check(config, camera_v4l::Config::check),
+        run: camera_v4l::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "tracker_flock",
+        about: "where the handset is, by an Ascension Flock of Birds on a serial port",
+        source: true,
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| vec![topic::pose(&node.instance).key],
+        defaults: defaults::<tracker_flock::Config>,
+        check: |config| check(config, tracker_flock::Config::check),
+        run: tracker_flock::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "tracker_polhemus",
+        about: "where the handset is, by a Polhemus Fastrak, Liberty or Patriot on a serial port",
+        source: true,
+        takes: |_| vec![topic::run_phase().key],
+        gives: |node| vec![topic::pose(&node.instance).key],
+        defaults: defaults::<tracker_polhemus::Config>,
+        check: |config| check(config, tracker_polhemus::Config::check),
+        run: tracker_polhemus::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "light",
+        about: "laser and lamp on a serial port, switched as the phase wants them",
+        paces: false,
+        takes: |_| vec![topic::run_phase().key],
+        defaults: defaults::<light::Config>,
+        check: |config| check(config, light::Config::check),
+        run: light::node::run,
+        ..PLAIN
+    },
+    Kind {
         name: "replay",
         about: "plays a recording or a scan folder as if it were happening",
         source: true,

@@ -19,7 +19,7 @@ pub const HELP: &str = "Examples:
   limn demo                                    the toy cow, live, with its page
   limn demo --headless --pace fast             as fast as the machine can, nothing to look at
   limn demo --object vase.obj --size-mm 120    your own thing: OBJ, PLY, STL, GLB or glTF
-  limn demo --rig paper                        the scanner of the 1996 paper, 3 degrees wrong
+  limn demo --rig fine                         a better camera, and a tracker that is right to 0.05 mm
 Afterwards OUT/report.html shows the model beside the truth.";
 
 /// How sources keep time.
@@ -43,11 +43,11 @@ pub struct Args {
     /// The largest side of that mesh.
     #[arg(long, value_name = "N", default_value_t = 150.0)]
     pub size_mm: f64,
-    /// A scene: `cow`, `tabletop`, or a scene file.
+    /// A scene: `cow`, `one_way`, `tabletop`, or a scene file.
     #[arg(long, value_name = "NAME|FILE")]
     pub scene: Option<String>,
-    /// A handset: `fine`, `paper`, or a rig file.
-    #[arg(long, value_name = "NAME|FILE", default_value = "fine")]
+    /// A handset: `paper` (its tracker is 3 degrees wrong), `field`, `mixed`, `flock`, `rough`, `fine`, or a rig file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "paper")]
     pub rig: String,
     /// The seed of everything random.
     #[arg(long, value_name = "N", default_value_t = 1)]
