@@ -19,7 +19,7 @@ use geometry::Smoothing;
 use nalgebra::Isometry3;
 
 /// Stripes must cross on this share of the surface before the hand-eye transform is freed.
-const CROSSING: f64 = 0.25;
+const CROSSING: f64 = 0.4;
 /// Less of the memberships seen by other strokes is nothing.
 const SEEN_TWICE: f64 = 0.05;
 /// The hand-eye correction may leave what is believed by so many standard deviations.
