@@ -48,6 +48,8 @@ impl fmt::Display for Difference {
     }
 }
 
+/// A picture of another size fits no rig.
+pub(crate) const SIZE: &str = "size";
 /// Rates are fractions of whole numbers.
 const RATE_TOLERANCE: f64 = 0.01;
 /// Exposure comes in steps of 100 us from most cameras.
@@ -66,7 +68,7 @@ pub fn differences(asked: &Config, granted: &Granted) -> Vec<Difference> {
     note(wanted == set, "format", letters(wanted), Some(letters(set)));
     let same = (asked.width, asked.height) == (granted.width, granted.height);
     let set = format!("{}x{}", granted.width, granted.height);
-    note(same, "size", format!("{}x{}", asked.width, asked.height), Some(set));
+    note(same, SIZE, format!("{}x{}", asked.width, asked.height), Some(set));
     let same = granted.rate_hz.is_some_and(|rate| (rate / asked.rate_hz - 1.0).abs() < RATE_TOLERANCE);
     note(same, "rate", format!("{} Hz", asked.rate_hz), granted.rate_hz.map(|rate| format!("{rate:.2} Hz")));
     if let Some(wanted) = asked.exposure_us {
@@ -89,4 +91,10 @@ pub fn differences(asked: &Config, granted: &Granted) -> Vec<Difference> {
 /// Parts what differs into what the configuration allows (first) and what it does not.
 pub fn part(asked: &Config, found: Vec<Difference>) -> (Vec<Difference>, Vec<Difference>) {
     found.into_iter().partition(|difference| asked.may_differ.contains(&difference.name))
+}
+
+/// What `may_differ` could allow, as the end of a sentence; nothing where all of it must be as asked.
+pub fn allowance(refused: &[Difference]) -> String {
+    let names: Vec<String> = refused.iter().filter(|d| d.name != SIZE).map(|d| format!("{:?}", d.name)).collect();
+    if names.is_empty() { String::new() } else { format!(", or add {} to may_differ", names.join(", ")) }
 }

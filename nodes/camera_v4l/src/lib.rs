@@ -72,7 +72,7 @@ pub use clock::{ClockMap, ClockReading};
 pub use config::{Config, ConfigError};
 pub use exposure::{ExposureConfig, Setting, StripeStatistics, next_setting};
 pub use follow::ExposureLoop;
-pub use granted::{Difference, Granted, differences, part};
+pub use granted::{Difference, Granted, allowance, differences, part};
 pub use host::{clock_readings, monotonic_nanos};
 #[cfg(feature = "v4l")]
 pub use inspect::inspect;

@@ -36,7 +36,7 @@ pub enum Trouble {
     },
     /// The driver has set something else in silence.
     #[error(
-        "{device} cannot do what is asked: {what}; ask for what it can do (`limn devices`), or add {allow} to may_differ",
+        "{device} cannot do what is asked: {what}; ask for what it can do (`limn devices`){allow}",
         device = .device.display()
     )]
     Differs {
@@ -44,7 +44,7 @@ pub enum Trouble {
         device: PathBuf,
         /// What differs, one after the other.
         what: String,
-        /// Names for `may_differ`.
+        /// What `may_differ` could allow, as the end of the sentence.
         allow: String,
     },
     /// It can do nothing that is understood here.

@@ -5,7 +5,7 @@ use crate::capture::{Device, Exposed, Opener};
 use crate::config::Config;
 use crate::controls::{self, Controls};
 use crate::exposure::Setting;
-use crate::granted::{Difference, Granted, differences, part};
+use crate::granted::{Difference, Granted, allowance, differences, part};
 use crate::host::monotonic_nanos;
 use crate::pixels::{DriverFormat, Layout};
 use crate::stamp::DriverStamp;
@@ -50,15 +50,17 @@ impl V4lOpener {
         let granted = read_back(config, &device, &controls)?;
         let (allowed, refused) = part(config, differences(config, &granted));
         if !refused.is_empty() {
-            let allow: Vec<String> = refused.iter().map(|difference| format!("{:?}", difference.name)).collect();
-            let (what, allow) = (sentence(&refused), allow.join(", "));
+            let (what, allow) = (sentence(&refused), allowance(&refused));
             return Err(Trouble::Differs { device: config.device.clone(), what, allow });
         }
         let format = DriverFormat::of_fourcc(granted.fourcc).ok_or_else(|| Trouble::Format {
             device: config.device.clone(),
             fourcc: String::from_utf8_lossy(&granted.fourcc).into_owned(),
         })?;
-        let layout = Layout { format, width: granted.width, height: granted.height, stride: granted.stride };
+        // Some drivers leave the stride to the reader.
+        let tight = format.least_stride(granted.width).unwrap_or_default() as u32;
+        let stride = if granted.stride == 0 { tight } else { granted.stride };
+        let layout = Layout { format, width: granted.width, height: granted.height, stride };
         let stream = guarded(config, "asking for buffers", || {
             Stream::with_buffers(&device, Type::VideoCapture, config.buffers)
         })?;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
-use camera_v4l::{Config, DriverFormat, Granted, Trouble, differences, part};
+use camera_v4l::{Config, DriverFormat, Granted, Trouble, allowance, differences, part};
 use std::io::Error;
 use std::path::Path;
 
@@ -55,6 +55,9 @@ fn every_silent_substitution_has_its_sentence() {
             "sharpness: 0 was asked for, the driver has set 2",
         ]
     );
+    let allow = allowance(&refused);
+    assert!(allow.starts_with(", or add \"format\", \"exposure\"") && !allow.contains("size"), "{allow}");
+    assert_eq!(allowance(&[]), "");
     let text: Vec<String> = allowed.iter().map(ToString::to_string).collect();
     assert_eq!(
         text,
@@ -112,6 +115,7 @@ fn what_no_camera_can_do_is_refused_with_its_key() {
         ("height = 100000", "height"),
         ("rate_hz = nan", "rate_hz"),
         ("buffers = 1", "buffers"),
+        ("may_differ = [\"rate\", \"size\"]", "may_differ"),
         ("exposure_us = -5", "exposure_us"),
         ("gamma = 0", "gamma"),
         ("exposure = { follow = true }", "exposure.follow"),
