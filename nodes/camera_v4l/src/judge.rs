@@ -3,78 +3,145 @@
 use crate::look::{BANDS, LightConfig, Look};
 use wire::{Light, Phase};
 
-/// Between dark and bright by more than this share on either side: the lamp was switched during the exposure.
-const SURE: f32 = 0.3;
-/// What is known follows the hand by this share with each picture.
-const FOLLOWS: f32 = 0.3;
-/// Dark and bright approach each other by this share with each picture, so that one glare is forgotten in seconds.
-const FORGETS: f32 = 0.005;
-/// Texture under the lamp looks like a line in fewer rows than this share of those in which the line itself was seen.
+type Bands = [f32; BANDS];
+
+/// Between the levels without the lamp (0) and with it (1), a picture belongs to the nearer.
+const MIDDLE: f32 = 0.5;
+/// A band that is so much nearer to the other level was lit otherwise than the rest: the light was switched meanwhile.
+const STRAYS: f32 = 0.25;
+/// Levels follow the hand by this share with each picture.
+const FOLLOWS: f32 = 0.6;
+/// How much of a line is usual, by this share.
+const USUAL_FOLLOWS: f32 = 0.1;
+/// Under the lamp, so much of a line is needed to believe that the laser is on: texture shows pieces as well.
+const STRONG_SHARE: f32 = 0.15;
+/// The same as a share of what is usual under the laser.
 const OF_USUAL: f32 = 0.5;
-/// Under the lamp alone, as it should be in `colour`, so much of a line is needed to believe that the laser is on.
-const STRONG_SHARE: f32 = 0.3;
 
 /// Knows how bright pictures are with the lamp and without it, and how much of a line the laser shows.
 #[derive(Debug, Clone, Default)]
 pub struct LightJudge {
-    levels: [Option<Levels>; BANDS],
+    levels: Option<Levels>,
     usual_share: f32,
 }
 
+/// What the lamp does to a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lamp {
+    Off,
+    On,
+    /// In one part of it.
+    Switched,
+}
+
 impl LightJudge {
-    /// What lit a picture. In `aim` and `shape` that is the laser, in `colour` the lamp unless a line is seen. In `both`
-    /// each is looked for: lit by the lamp alone is what is bright from top to bottom and shows no line; a switch in the
-    /// middle of an exposure counts as both (a line may be there, the colours are wrong), or, when no line is seen, as
-    /// neither.
+    /// What lit a picture. In `aim` and `shape` that is the laser, in `colour` the lamp unless a strong line is seen. In
+    /// `both`, where they take turns, it is the lamp where the picture is as bright as it is with the lamp, from top to
+    /// bottom, and else the laser. A switch in the middle of an exposure counts as both (a line may be there, the colours
+    /// are wrong), or, when no line is seen, as neither.
     pub fn judge(&mut self, phase: Phase, seen: &Look, config: &LightConfig) -> Light {
-        let mut places = Vec::with_capacity(BANDS);
-        for (level, &brightness) in self.levels.iter_mut().zip(&seen.brightness) {
-            let level = level.get_or_insert(Levels { dark: brightness, bright: brightness });
-            places.extend(level.place(brightness, config.lamp_contrast));
+        let levels = self.levels.get_or_insert(Levels::starting(seen.brightness));
+        let lamp = levels.lamp(&seen.brightness, config.lamp_contrast);
+        if lamp == Lamp::Off && phase != Phase::Colour {
+            self.usual_share += USUAL_FOLLOWS * (seen.stripe_share - self.usual_share);
         }
-        let is_dark = places.iter().all(|place| *place < SURE);
-        let is_bright = !places.is_empty() && places.iter().all(|place| *place > 1.0 - SURE);
-        if is_dark && phase != Phase::Colour {
-            self.usual_share += FOLLOWS * (seen.stripe_share - self.usual_share);
-        }
-        let least_under_lamp = config.stripe_share.max(OF_USUAL * self.usual_share);
-        match phase {
-            Phase::End => Light { laser: false, lamp: false },
-            Phase::Aim | Phase::Shape => Light { laser: true, lamp: false },
-            Phase::Colour => {
-                let laser = seen.stripe_share >= least_under_lamp.max(STRONG_SHARE);
-                Light { laser, lamp: !laser }
+        let strong = seen.stripe_share >= STRONG_SHARE.max(OF_USUAL * self.usual_share);
+        let (laser, lamp) = match (phase, lamp) {
+            (Phase::End, _) => (false, false),
+            (Phase::Aim | Phase::Shape, _) | (Phase::Both, Lamp::Off) => (true, false),
+            (Phase::Colour, _) => (strong, !strong),
+            (Phase::Both, Lamp::On) => (strong, true),
+            (Phase::Both, Lamp::Switched) => {
+                let line = seen.stripe_share >= config.stripe_share;
+                (line, line)
             }
-            Phase::Both => {
-                let laser = seen.stripe_share >= if is_dark { config.stripe_share } else { least_under_lamp };
-                Light { laser, lamp: if laser { !is_dark } else { is_bright } }
-            }
-        }
+        };
+        Light { laser, lamp }
     }
 }
 
-/// Grey levels of one band.
+/// Grey levels of each band.
 #[derive(Debug, Clone, Copy)]
 struct Levels {
     /// Without the lamp.
-    dark: f32,
-    /// With it.
-    bright: f32,
+    dark: Bands,
+    /// With it; none before it was seen to make a difference.
+    bright: Option<Bands>,
+    /// The picture before, and whether it was taken for one with the lamp.
+    before: (Bands, bool),
 }
 
 impl Levels {
-    /// Where between dark (0) and bright (1) a picture lies; none where the lamp makes no difference.
-    fn place(&mut self, brightness: f32, least_contrast: f32) -> Option<f32> {
-        let forgotten = FORGETS * (self.bright - self.dark);
-        self.dark = (self.dark + forgotten).min(brightness);
-        self.bright = (self.bright - forgotten).max(brightness);
-        let contrast = self.bright - self.dark;
-        if contrast < least_contrast {
-            return None;
-        }
-        let place = (brightness - self.dark) / contrast;
-        let side = if place > 0.5 { &mut self.bright } else { &mut self.dark };
-        *side += FOLLOWS * (brightness - *side);
-        Some(place)
+    fn starting(now: Bands) -> Self {
+        Self { dark: now, bright: None, before: (now, false) }
     }
+
+    /// Compares a picture with the newest ones of either kind, and remembers it as one of them. Where the lamp does not
+    /// reach, a band says nothing.
+    fn lamp(&mut self, now: &Bands, least_contrast: f32) -> Lamp {
+        let lamp = self.by_jump(now, least_contrast).unwrap_or_else(|| self.by_level(now, least_contrast));
+        self.before = (*now, lamp == Lamp::On);
+        lamp
+    }
+
+    /// What jumps up has the lamp, and what jumps down shows that the one before had it, whatever was believed till now.
+    fn by_jump(&mut self, now: &Bands, least_contrast: f32) -> Option<Lamp> {
+        let (last, last_on) = self.before;
+        let contrast = self.bright.map_or(0.0, |bright| most(&bright, &self.dark));
+        let enough = least_contrast.max(MIDDLE * contrast);
+        let brighter = now.iter().sum::<f32>() > last.iter().sum::<f32>();
+        let is_on = if brighter && most(now, &last) >= enough && (last_on || self.bright.is_none()) {
+            true
+        } else if !brighter && most(&last, now) >= enough && !last_on {
+            false
+        } else {
+            return None;
+        };
+        let (bright, dark) = if is_on { (*now, last) } else { (last, *now) };
+        (self.bright, self.dark) = (Some(bright), dark);
+        Some(if is_on { Lamp::On } else { Lamp::Off })
+    }
+
+    fn by_level(&mut self, now: &Bands, least_contrast: f32) -> Lamp {
+        let Some(bright) = self.bright.filter(|bright| most(bright, &self.dark) >= least_contrast) else {
+            (self.bright, self.dark) = (None, *now);
+            return Lamp::Off;
+        };
+        let mut known = Vec::with_capacity(BANDS);
+        let (mut above, mut contrasts) = (0.0, 0.0);
+        for band in 0..BANDS {
+            let contrast = bright[band] - self.dark[band];
+            if contrast >= least_contrast {
+                above += now[band] - self.dark[band];
+                contrasts += contrast;
+                known.push((now[band] - self.dark[band]) / contrast);
+            }
+        }
+        let is_on = above > MIDDLE * contrasts;
+        self.follow(now, bright, is_on);
+        match is_on {
+            true if known.iter().all(|place| *place > STRAYS) => Lamp::On,
+            false if known.iter().all(|place| *place < 1.0 - STRAYS) => Lamp::Off,
+            _ => Lamp::Switched,
+        }
+    }
+
+    fn follow(&mut self, now: &Bands, mut bright: Bands, is_on: bool) {
+        for band in 0..BANDS {
+            if is_on {
+                bright[band] += FOLLOWS * (now[band] - bright[band]);
+            } else {
+                // What the lamp adds is added to what is there without it.
+                let change = FOLLOWS * (now[band] - self.dark[band]);
+                self.dark[band] += change;
+                bright[band] += change;
+            }
+        }
+        self.bright = Some(bright);
+    }
+}
+
+/// The most by which a band is brighter than in another picture.
+fn most(now: &Bands, than: &Bands) -> f32 {
+    now.iter().zip(than).map(|(now, than)| now - than).fold(f32::MIN, f32::max)
 }
