@@ -46,6 +46,13 @@ pub struct Config {
     pub white_albedo: f64,
     /// Passes of the 1-2-1 / 2-4-2 / 1-2-1 blur. The paper: 1.
     pub blur_passes: usize,
+    /// Whether the pictures are moved a little until they agree, before they are painted. A lamp-lit picture stands
+    /// between laser-lit ones, which alone tell the way, and the hand's tremor at its own moment is not known.
+    pub settle: bool,
+    /// How far a picture's pose errs along each axis (one standard deviation).
+    pub settle_shift_mm: f64,
+    /// How far it errs about each axis (one standard deviation).
+    pub settle_turn_degrees: f64,
     /// Pictures that wait for the final mesh take at most this many MiB of memory.
     pub memory_mib: usize,
 }
@@ -70,6 +77,9 @@ impl Default for Config {
             white_percentile: 0.99,
             white_albedo: 0.8,
             blur_passes: 1,
+            settle: true,
+            settle_shift_mm: 0.7,
+            settle_turn_degrees: 0.4,
             memory_mib: 512,
         }
     }
@@ -117,6 +127,8 @@ impl Config {
         within("white_percentile", self.white_percentile, 0.5, 1.0, "0.5 to 1")?;
         within("white_albedo", self.white_albedo, 0.01, 1.0, "0.01 to 1")?;
         within("blur_passes", self.blur_passes as f64, 0.0, 8.0, "0 to 8 passes")?;
+        within("settle_shift_mm", self.settle_shift_mm, 1e-3, 100.0, "0.001 to 100 mm")?;
+        within("settle_turn_degrees", self.settle_turn_degrees, 1e-3, 10.0, "0.001 to 10 degrees")?;
         within("memory_mib", self.memory_mib as f64, 1.0, 1e6, "1 to 1000000 MiB")
     }
 

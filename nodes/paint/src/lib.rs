@@ -24,6 +24,10 @@
 //!    The fourth byte of a texel says it: 255 seen, 85 filled, 0 no colour (grey) or no cell.
 //! 7. One gain for all channels puts `white_percentile` of the seen cells at `white_albedo`.
 //!
+//! Before they are painted, the pictures are moved a little until they agree on the colours ([`Painter::settle`]; Zhou &
+//! Koltun 2014): the hand trembles between the laser-lit pictures that tell its way, and several pixels' error would blur
+//! the borders of colours. A picture moves only where that makes it agree better; on a thing of one colour none does.
+//!
 //! Frames that come before the final mesh wait in a [`FrameStore`] of bounded memory, cropped, and are painted at the end
 //! with the final trajectory. Same input, same bytes, on any number of threads and in any order of the pictures.
 //!
@@ -77,6 +81,7 @@ mod painter;
 mod picture;
 mod region;
 mod sample;
+mod settle;
 mod spread;
 mod store;
 mod texture;
@@ -88,4 +93,5 @@ pub use look::CellRefusal;
 pub use painter::{FrameReport, Painter, PainterError, SurfaceError};
 pub use picture::{FrameRefusal, Picture};
 pub use region::{NoRegion, Region};
+pub use settle::{SettleRefusal, Settling, Shot};
 pub use store::FrameStore;

@@ -1,7 +1,7 @@
 //! One look at the surface: which cells a picture colours, and how.
 
 use crate::atlas::Texel;
-use crate::light::{Light, WORKING_DISTANCE_M};
+use crate::light::{Light, Lit, WORKING_DISTANCE_M};
 use crate::occlusion::Occlusion;
 use crate::region::Region;
 use crate::sample::{Sample, mix};
@@ -76,6 +76,19 @@ pub struct Look<'a> {
     hash: u64,
 }
 
+/// Where a cell lies in a picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// In the working region.
+    pub pixel: Point2<f32>,
+    /// Size of a pixel at that distance.
+    pub metres_per_pixel: f32,
+    /// The light there.
+    pub lit: Lit,
+    /// How much an estimate from there counts.
+    pub weight: f32,
+}
+
 impl<'a> Look<'a> {
     /// `depth` must have been seen from the same place.
     pub fn new(
@@ -99,6 +112,12 @@ impl<'a> Look<'a> {
 
     /// The estimate of one cell, by the paper's rules (section 2.6).
     pub fn at(&self, number: u32, texel: &Texel) -> Result<Sample, CellRefusal> {
+        let place = self.place(texel)?;
+        self.sample(number, &place)
+    }
+
+    /// Where a cell lies in the picture, if it may be coloured by it.
+    pub fn place(&self, texel: &Texel) -> Result<Place, CellRefusal> {
         let p_in_camera = self.rotation * Vector3::from(texel.position_m) + self.translation;
         let distance = p_in_camera.norm();
         let on_axis = p_in_camera.z > 0.0 && p_in_camera.z >= self.region.axis_cosine * distance;
@@ -118,17 +137,26 @@ impl<'a> Look<'a> {
         if lit.irradiance == 0.0 && !self.rules.has_ambient {
             return Err(CellRefusal::Unlit);
         }
-        let light = self.mean_light(&pixel, (self.rules.cell_m / metres_per_pixel).max(1.0))?;
         // Facing surfaces are shaded least, near ones seen finest.
         let nearness = (WORKING_DISTANCE_M / distance).powi(2).clamp(0.1, 4.0);
         let weight = facing * facing * nearness * if lit.gleams { GLEAM_WEIGHT } else { 1.0 };
-        let radiance = light.map(|light| light / lit.vignetting);
-        Ok(Sample::new(radiance, lit.irradiance, weight, mix(self.hash ^ u64::from(number))))
+        Ok(Place { pixel, metres_per_pixel, lit, weight })
+    }
+
+    /// The estimate of a cell that lies there.
+    pub fn sample(&self, number: u32, place: &Place) -> Result<Sample, CellRefusal> {
+        let side = (self.rules.cell_m / place.metres_per_pixel).max(1.0);
+        let light = self.mean_light(&place.pixel, side)?;
+        let radiance = light.map(|light| light / place.lit.vignetting);
+        Ok(Sample::new(radiance, place.lit.irradiance, place.weight, mix(self.hash ^ u64::from(number))))
     }
 
     /// By the depth of the surface at the pixel; the tolerance allows for the slope across a pixel and a half.
     fn check_visible(&self, pixel: &Point2<f32>, depth_m: f32, metres_per_pixel: f32) -> Result<(), CellRefusal> {
-        let at = pixel.y.round() as usize * self.region.camera.width as usize + pixel.x.round() as usize;
+        let [width, height] = [self.region.camera.width, self.region.camera.height].map(|size| size as usize);
+        // A place just inside the border may have been rounded onto it.
+        let (column, row) = ((pixel.x.round() as usize).min(width - 1), (pixel.y.round() as usize).min(height - 1));
+        let at = row * width + column;
         let inverse = self.depth.inverse_depth[at];
         let tolerance = self.rules.depth_tolerance_m + 1.5 * metres_per_pixel;
         if inverse > 0.0 && depth_m > inverse.recip() + tolerance {

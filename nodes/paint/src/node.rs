@@ -1,6 +1,6 @@
 //! The wiring: lamp-lit frames are kept until the surface is final, and then painted onto it.
 
-use crate::{Config, FrameStore, Painter};
+use crate::{Config, FrameStore, Painter, Shot};
 use geometry::TrajectoryBuffer;
 use kit::{GATHERED_HISTORY, Input, Node, STREAM_HISTORY};
 use std::time::Instant;
@@ -77,7 +77,8 @@ fn take(
         renew(scan, &trajectory.header, bound_bytes);
         // A better way of the same scan.
         if trajectory.header.revision > scan.revision {
-            (scan.revision, scan.way, scan.way_ended) = (trajectory.header.revision, TrajectoryBuffer::default(), false);
+            (scan.revision, scan.way, scan.way_ended) =
+                (trajectory.header.revision, TrajectoryBuffer::default(), false);
         }
         trajectory.samples.iter().for_each(|sample| {
             scan.way.push(sample.into());
@@ -124,14 +125,19 @@ fn paint(node: &mut Node, painter: &mut Painter, scan: &Scan) -> anyhow::Result<
         tracing::error!("the surface cannot be painted: {error}");
         node.refuse("surface that cannot be painted", 1);
     }
+    let mut shots = Vec::new();
     for picture in scan.store.pictures() {
         match scan.way.at(picture.header.stamp_nanos, GAP_NANOS) {
-            Ok(place) => {
-                if let Err(refusal) = painter.picture(picture, &place.pose) {
-                    node.refuse(&refusal.to_string(), 1);
-                }
-            }
+            Ok(place) => shots.push((picture, place.pose)),
             Err(reason) => node.refuse(&format!("picture {reason}"), 1),
+        }
+    }
+    if painter.config.settle {
+        settle(painter, &mut shots);
+    }
+    for (picture, world_from_camera) in &shots {
+        if let Err(refusal) = painter.picture(picture, world_from_camera) {
+            node.refuse(&refusal.to_string(), 1);
         }
     }
     let (model, evidence) = painter.model();
@@ -144,4 +150,24 @@ fn paint(node: &mut Node, painter: &mut Painter, scan: &Scan) -> anyhow::Result<
         evidence.grey
     );
     Ok(model)
+}
+
+/// Moves the pictures to where they agree.
+fn settle(painter: &mut Painter, shots: &mut [Shot<'_>]) {
+    let started = Instant::now();
+    let (poses, settling) = painter.settle(shots);
+    shots.iter_mut().zip(poses).for_each(|(shot, pose)| shot.1 = pose);
+    tracing::info!(
+        "{} of {} pictures settled in {:.2?}, by {:.2} mm and {:.2} degrees: they disagree by {:.1}/255, not {:.1}",
+        settling.corrected,
+        settling.pictures,
+        started.elapsed(),
+        settling.shift_rms_mm,
+        settling.turn_rms_degrees,
+        settling.apart_after_255,
+        settling.apart_before_255
+    );
+    for refused in &settling.refused {
+        tracing::info!("not settled: {} x {}", refused.count, refused.reason);
+    }
 }

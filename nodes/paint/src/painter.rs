@@ -60,8 +60,8 @@ pub struct FrameReport {
 #[derive(Debug)]
 pub struct Painter {
     pub(crate) config: Config,
-    region: Region,
-    rules: Rules,
+    pub(crate) region: Region,
+    pub(crate) rules: Rules,
     pub(crate) surface: Option<Surface>,
     refused_frames: [u64; FrameRefusal::ALL.len()],
 }
@@ -146,25 +146,39 @@ impl Painter {
         picture: &Picture,
         world_from_camera: &Isometry3<f64>,
     ) -> Result<FrameReport, FrameRefusal> {
-        if (picture.width, picture.height) != (self.region.camera.width, self.region.camera.height) {
-            return Err(self.count(FrameRefusal::Size));
-        }
-        let camera_from_world = world_from_camera.inverse();
-        if !camera_from_world.to_homogeneous().iter().all(|value| value.is_finite()) {
-            return Err(self.count(FrameRefusal::Pose));
+        if let Some(refusal) = self.refusal(picture, world_from_camera) {
+            return Err(self.count(refusal));
         }
         if self.surface.is_none() {
             return Err(self.count(FrameRefusal::NoSurface));
         }
-        Ok(self.paint(picture, &camera_from_world))
+        Ok(self.paint(picture, &world_from_camera.inverse()))
+    }
+
+    /// Why a picture cannot be seen from there.
+    pub(crate) fn refusal(&self, picture: &Picture, world_from_camera: &Isometry3<f64>) -> Option<FrameRefusal> {
+        let camera = &self.region.camera;
+        let fits = (picture.width, picture.height) == (camera.width, camera.height)
+            && picture.pixels.len() == camera.width as usize * camera.height as usize;
+        let finite = world_from_camera.inverse().to_homogeneous().iter().all(|value| value.is_finite());
+        match (fits, finite) {
+            (false, _) => Some(FrameRefusal::Size),
+            (_, false) => Some(FrameRefusal::Pose),
+            _ => None,
+        }
+    }
+
+    /// What counts as an edge in depth.
+    pub(crate) fn edge(&self) -> Edge {
+        Edge {
+            jump_m: (self.config.edge_jump_mm * geometry::METRES_PER_MM) as f32,
+            margin_px: self.config.edge_margin_px as usize,
+        }
     }
 
     fn paint(&mut self, picture: &Picture, camera_from_world: &Isometry3<f64>) -> FrameReport {
+        let edge = self.edge();
         let Some(surface) = &mut self.surface else { return FrameReport::default() };
-        let edge = Edge {
-            jump_m: (self.config.edge_jump_mm * geometry::METRES_PER_MM) as f32,
-            margin_px: self.config.edge_margin_px as usize,
-        };
         surface.occlusion.see(&self.region.camera, camera_from_world, self.region.corner_rad, &edge);
         let look = Look::new(&self.rules, &self.region, picture, &surface.occlusion, camera_from_world);
         let per_cell = self.config.samples_per_cell;
