@@ -6,8 +6,12 @@ use crate::{
     surface_cmd, top, topics, up,
 };
 use anyhow::Result;
+#[cfg(feature = "v4l")]
+use camera_v4l::inspect;
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+#[cfg(not(feature = "v4l"))]
+use devices::not_built_in as inspect;
+use std::path::{Path, PathBuf};
 
 /// An inverse paintbrush: sweep a camera, a line laser and a lamp over a thing, and its shape and colour appear.
 #[derive(Debug, Parser)]
@@ -69,6 +73,8 @@ pub enum Command {
     /// Play a recording or a scan folder through a pipeline.
     #[command(after_help = replay_cmd::HELP)]
     Replay(replay_cmd::Args),
+    /// List the cameras and serial ports of this machine, and what keeps you from them.
+    Devices,
     /// Find the laser's stripe in a picture.
     #[command(after_help = stripe_cmd::HELP)]
     Stripe(stripe_cmd::Args),
@@ -131,6 +137,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Demo(args) => demo::run(&args),
         Command::Model(args) => model_cmd::run(&args),
         Command::Refine(args) => refine_cmd::run(&args),
+        Command::Devices => live::print(&devices::list(Path::new("/"), inspect).to_string()),
         Command::Up(args) => up::run(&args),
         Command::Scan { order, rig } => scan::run(order, &rig),
         Command::Top(rig) => top::run(&rig),

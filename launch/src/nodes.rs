@@ -52,7 +52,11 @@ pub const KINDS: &[Kind] = &[
         name: "camera_v4l",
         about: "pictures from a camera on this machine, with the time of their exposure",
         source: true,
-        takes: |_| vec![topic::run_phase().key],
+        inputs: &["rig", "stripe"],
+        takes: |node| {
+            let (calibration, stripe) = (topic::calibration(node.of("rig")).key, topic::stripe(node.of("stripe")).key);
+            vec![topic::run_phase().key, calibration, stripe]
+        },
         gives: |node| vec![topic::frame(&node.instance).key, topic::colour(&node.instance).key],
         defaults: defaults::<camera_v4l::Config>,
         check: |config| check(config, camera_v4l::Config::check),
@@ -84,6 +88,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "light",
         about: "laser and lamp on a serial port, switched as the phase wants them",
+        source: true,
         paces: false,
         takes: |_| vec![topic::run_phase().key],
         defaults: defaults::<light::Config>,

@@ -10,14 +10,19 @@ use std::process::Command;
 const WORLD: &str = "world";
 /// Library of the trackers on serial ports: no node.
 const SERIAL_LINE: &str = "serial_line";
-const NODES: [&str; 14] = [
+/// Library of what is plugged in: no node.
+const DEVICES: &str = "devices";
+const NODES: [&str; 17] = [
     "camera_sim",
+    "camera_v4l",
+    "light",
     "tracker_sim",
     "tracker_flock",
     "tracker_polhemus",
     "stripe",
     "triangulate",
     "register",
+    "refine",
     "cluster",
     "surface",
     "paint",
@@ -57,6 +62,9 @@ fn each_crate_knows_only_what_it_may() {
         ("kit", vec!["wire", "bus"]),
         (WORLD, vec!["wire", "geometry", "formats"]),
         (SERIAL_LINE, vec![]),
+        (DEVICES, vec![]),
+        // The proof of camera_v4l on a real driver.
+        ("on_vivid", vec!["camera_v4l", DEVICES, "wire"]),
         ("report", vec!["wire", "geometry", "formats"]),
     ]);
     for node in NODES {
@@ -66,6 +74,8 @@ fn each_crate_knows_only_what_it_may() {
     allowed.insert("tracker_sim", vec!["wire", "geometry", "formats", "kit", WORLD]);
     allowed.insert("tracker_flock", vec!["wire", "geometry", "formats", "kit", SERIAL_LINE]);
     allowed.insert("tracker_polhemus", vec!["wire", "geometry", "formats", "kit", SERIAL_LINE]);
+    allowed.insert("light", vec!["wire", "kit", SERIAL_LINE]);
+    allowed.insert("camera_v4l", vec!["wire", "kit", DEVICES]);
     for (name, dependencies) in &all {
         let Some(allowed) = allowed.get(name.as_str()) else {
             assert!(matches!(name.as_str(), "limn" | "system_tests"), "{name} is not in ARCHITECTURE.md's table");
@@ -86,6 +96,7 @@ fn what_is_heavy_or_may_change_is_named_by_one_crate_alone() {
         ("rerun", "view"),
         ("parry3d", "geometry"),
         ("serialport", SERIAL_LINE),
+        ("v4l", "camera_v4l"),
     ];
     for (name, dependencies) in dependencies() {
         for (library, owner) in owners {

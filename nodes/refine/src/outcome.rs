@@ -29,6 +29,8 @@ const MARGIN_NANOS: i64 = 500_000_000;
 const GAUGE_POINTS: usize = 20_000;
 /// A frame is not dropped for a residual below this: it may be the grain of the surface.
 const LEAST_MISFIT_M: f64 = 3e-4;
+/// From the handset to what it measures, about.
+const LEVER_M: f64 = 0.2;
 /// A frame whose points are known so many times worse than those of half of the frames is held by nothing ...
 const UNHELD: f64 = 8.0;
 /// ... when that is as much as this.
@@ -53,7 +55,7 @@ pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged:
     let all: Vec<RefinedFrame> = (0..poses.len()).into_par_iter().map(frame).collect();
     let trajectory = trajectory(problem, x, &gauge, &all);
     let (mut kept, mut dropped, mut frames) = (Vec::new(), Vec::new(), Vec::new());
-    let bounds = Bounds::new(config, judged, &all);
+    let bounds = Bounds::new(config, problem, judged, &all);
     for (frame, judgement) in all.into_iter().zip(&judged.frames) {
         let stamp_nanos = frame.pose.stamp_nanos;
         let residual_mm = Some(judgement.residual_m * 1e3).filter(|residual| residual.is_finite());
@@ -78,11 +80,15 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn new(config: &Config, judged: &Judgement, frames: &[RefinedFrame]) -> Self {
+    fn new(config: &Config, problem: &Problem, judged: &Judgement, frames: &[RefinedFrame]) -> Self {
+        let [position_m, rotation_rad] = problem.smoothed.white();
+        // A tracker that is so good puts no frame so far off: what does not fit is the shape's own detail.
+        let tracker_m = position_m.hypot(rotation_rad * LEVER_M);
+        let misfit = if tracker_m < LEAST_MISFIT_M { f64::INFINITY } else { LEAST_MISFIT_M };
         let residual = median(judged.frames.iter().map(|frame| frame.residual_m).filter(|r| r.is_finite()).collect());
         let sigma = median(frames.iter().map(|frame| frame.across_sigma_m).collect());
         Self {
-            residual_m: (config.most_residual * residual).max(LEAST_MISFIT_M),
+            residual_m: (config.most_residual * residual).max(misfit),
             sigma_m: (UNHELD * sigma).max(LEAST_UNHELD_M),
         }
     }
