@@ -46,7 +46,11 @@ fn the_page_stands_alone_and_takes_no_markup_from_names() {
     assert!(html.contains("&lt;script&gt;") && html.contains("depth &lt; gate &amp; &quot;odd&quot;"));
     assert_eq!(html.matches("data:image/png;base64,").count(), 16);
     assert!(html.contains("No message was lost.") && html.contains("1\u{202f}234"));
-    assert_eq!(html, page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() }), "same input, same bytes");
+    assert_eq!(
+        html,
+        page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() }),
+        "same input, same bytes"
+    );
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //! `**` does not see; a latched topic never has an `@` (Zenoh's history cannot find it there).
 
 use crate::{
-    Calibration, Cloud, Frame, Health, LogLine, Mesh, Message, Model, Pose, Profile, Progress, Refinement, RunPhase, Scan, Stripe,
-    Trajectory,
+    Calibration, Cloud, Frame, Health, LogLine, Mesh, Message, Model, Pose, Profile, Progress, Refinement, RunPhase,
+    Scan, Stripe, Trajectory,
 };
 use std::marker::PhantomData;
 

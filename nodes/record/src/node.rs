@@ -86,11 +86,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
 }
 
 /// Keeps a message, and returns its header; what cannot be read is counted, and kept all the same.
-fn keep(
-    node: &mut Node,
-    recorder: &mut Recorder,
-    message: &RawMessage,
-) -> anyhow::Result<Option<Header>> {
+fn keep(node: &mut Node, recorder: &mut Recorder, message: &RawMessage) -> anyhow::Result<Option<Header>> {
     let Ok(header) = codec::header(&message.bytes) else {
         node.refuse("message without a header", 1);
         return Ok(None);

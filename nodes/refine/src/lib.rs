@@ -92,15 +92,15 @@ mod refiner;
 mod scene;
 mod schedule;
 mod schur;
+mod sentence;
 mod solver;
 mod spline;
 mod step;
 mod surfel;
-mod testimony;
-mod tracker;
-mod sentence;
 #[cfg(feature = "node")]
 mod tell;
+mod testimony;
+mod tracker;
 mod unknowns;
 #[cfg(feature = "node")]
 mod worker;
@@ -111,5 +111,5 @@ pub use evidence::{
     Residual, TrackerEvidence,
 };
 pub use refinement::Refinement;
-pub use sentence::sentence;
 pub use refiner::{RefineError, Refiner};
+pub use sentence::sentence;
