@@ -9,6 +9,11 @@ use wire::{Frame, Header, Mesh, Model, Phase, Trajectory, topic};
 /// Between two samples of the way, a frame's place is taken from them when they are no further apart.
 const GAP_NANOS: i64 = 100_000_000;
 
+/// Pictures that are known to aim so well need not be moved, which takes time.
+const WELL_AIMED_M: f64 = 1e-4;
+/// From the handset to what it sees, about.
+const LEVER_M: f64 = 0.2;
+
 /// What has come of one scan.
 struct Scan {
     header: Header,
@@ -125,14 +130,17 @@ fn paint(node: &mut Node, painter: &mut Painter, scan: &Scan) -> anyhow::Result<
         tracing::error!("the surface cannot be painted: {error}");
         node.refuse("surface that cannot be painted", 1);
     }
-    let mut shots = Vec::new();
+    let (mut shots, mut aims_m) = (Vec::new(), Vec::new());
     for picture in scan.store.pictures() {
         match scan.way.at(picture.header.stamp_nanos, GAP_NANOS) {
-            Ok(place) => shots.push((picture, place.pose)),
+            Ok(place) => {
+                shots.push((picture, place.pose));
+                aims_m.push(place.position_sigma_m.hypot(place.rotation_sigma_rad * LEVER_M));
+            }
             Err(reason) => node.refuse(&format!("picture {reason}"), 1),
         }
     }
-    if painter.config.settle {
+    if painter.config.settle && median(&mut aims_m) > WELL_AIMED_M {
         settle(painter, &mut shots);
     }
     for (picture, world_from_camera) in &shots {
@@ -150,6 +158,11 @@ fn paint(node: &mut Node, painter: &mut Painter, scan: &Scan) -> anyhow::Result<
         evidence.grey
     );
     Ok(model)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
 /// Moves the pictures to where they agree.
