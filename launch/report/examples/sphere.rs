@@ -115,6 +115,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             p95_255: 11.8,
         }),
         failures: vec![],
+        ..Report::default()
     };
     report.write_html(out.as_ref(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() })?;
     Ok(())
