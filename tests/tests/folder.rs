@@ -6,10 +6,20 @@ use std::path::Path;
 use system_tests::rig::{Course, Rig, signal, wait_for_ready};
 use system_tests::{limn, lost, number, report, short_up, succeed};
 
+/// Refinement hears the last decimal of a pose, and a scan of 6 s gives it little to hold on to.
+const UNREFINED: [&str; 6] = [
+    "--set",
+    "nodes.refine.enabled=false",
+    "--set",
+    "nodes.cluster.inputs.world=head",
+    "--set",
+    "nodes.paint.inputs.world=head",
+];
+
 /// `limn model` of an input; all that decides the model is said here, since a folder tells no settings.
 fn model(input: &Path, out: &Path) -> serde_json::Value {
     let mut model = limn();
-    model.arg("model").arg(input).arg("-o").arg(out);
+    model.arg("model").arg(input).args(UNREFINED).arg("-o").arg(out);
     for set in ["cluster.table=remove", "surface.drop_islands_mm=5.0", "paint.lamp_from_camera_m=[0.025, -0.015, 0.0]"]
     {
         model.args(["--set", set]);
@@ -62,5 +72,5 @@ fn a_scan_folder_gives_the_model_of_its_recording() {
     let comparison: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     println!("{comparison:#}");
     // Times and places went through decimals; the surface must not notice.
-    assert!(number(&comparison, "/model_to_truth/p95_mm") < 0.01, "{comparison:#}");
+    assert!(number(&comparison, "/model_to_truth/max_mm") < 0.01, "{comparison:#}");
 }
