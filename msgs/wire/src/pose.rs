@@ -51,3 +51,18 @@ layout! {
     }
 }
 message!(Pose @ 1);
+
+impl Pose {
+    /// No reading: what goes behind the last one, and why there is none.
+    pub fn none(header: Header, reason: &str) -> Self {
+        Self {
+            header,
+            world_from_body: RigidPose::IDENTITY,
+            position_sigma_m: [0.0; 3],
+            rotation_sigma_rad: [0.0; 3],
+            rotation_lag_nanos: 0,
+            quality: Quality::Lost,
+            reason: reason.to_owned(),
+        }
+    }
+}

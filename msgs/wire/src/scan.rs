@@ -35,3 +35,17 @@ layout! {
     }
 }
 message!(Scan @ 1);
+
+impl Scan {
+    /// No points: what goes behind the last picture.
+    pub fn none(header: Header) -> Self {
+        Self {
+            header,
+            world_from_camera: RigidPose::IDENTITY,
+            position_sigma_m: 0.0,
+            rotation_sigma_rad: 0.0,
+            points: Bulk::default(),
+            refused: Vec::new(),
+        }
+    }
+}

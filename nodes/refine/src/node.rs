@@ -6,7 +6,7 @@ use crate::{Config, Evidence, Refinement, sentence, tell};
 use anyhow::Context as _;
 use kit::{Input, Node, Output};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use wire::{Bulk, Calibration, Header, Phase, Pose, Profile, RigidPose, Scan, Trajectory, topic};
+use wire::{Bulk, Calibration, Header, Phase, Pose, Profile, Scan, Trajectory, topic};
 
 const PROFILES: usize = 1024;
 const POSES: usize = 4096;
@@ -247,11 +247,7 @@ impl Course {
         let end = self.ends[2].context("an end that nobody sent")?;
         let header = Header { revision: self.revision, phase: Phase::End, ..end.derived() };
         self.outputs.ways.send(Trajectory { header, samples: Bulk::default() })?;
-        let (world_from_camera, points) = (RigidPose::IDENTITY, Bulk::default());
-        let (position_sigma_m, rotation_sigma_rad) = (0.0, 0.0);
-        let refused = Vec::new();
-        let last = Scan { header, world_from_camera, position_sigma_m, rotation_sigma_rad, points, refused };
-        self.outputs.scans.send(last)?;
+        self.outputs.scans.send(Scan::none(header))?;
         node.finished(&header)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{Config, Register};
 use kit::{Node, Output, STREAM_HISTORY};
-use wire::{Bulk, Header, RigidPose, Scan, Trajectory, topic};
+use wire::{Bulk, Header, Scan, Trajectory, topic};
 
 /// Registers the profiles of a camera by the poses of a tracker until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
@@ -46,7 +46,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
         if let Some(end) = ended {
             ends = [None; 2];
             trajectories.send(Trajectory { header: end.derived(), samples: Bulk::default() })?;
-            scans.send(last(end.derived()))?;
+            scans.send(Scan::none(end.derived()))?;
             node.finished(&end)?;
         }
     }
@@ -61,15 +61,4 @@ fn send(node: &mut Node, register: &mut Register, scans: &mut Output<Scan>) -> a
         node.finished(&header)?;
     }
     Ok(())
-}
-
-fn last(header: Header) -> Scan {
-    Scan {
-        header,
-        world_from_camera: RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        points: Bulk::default(),
-        refused: Vec::new(),
-    }
 }

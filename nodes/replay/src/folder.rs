@@ -132,20 +132,6 @@ pub(crate) fn empty_frame(header: Header) -> Frame {
     }
 }
 
-/// The last message of a tracker carries no reading.
-#[cfg(feature = "node")]
-pub(crate) fn no_pose(header: Header) -> Pose {
-    Pose {
-        header,
-        world_from_body: wire::RigidPose::IDENTITY,
-        position_sigma_m: [0.0; 3],
-        rotation_sigma_rad: [0.0; 3],
-        rotation_lag_nanos: 0,
-        quality: wire::Quality::Lost,
-        reason: "the recording ends here".to_owned(),
-    }
-}
-
 /// The last message of a stripe detector carries no peaks.
 #[cfg(feature = "node")]
 pub(crate) fn no_stripe(header: Header) -> wire::Stripe {

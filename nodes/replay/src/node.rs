@@ -139,9 +139,13 @@ impl Outputs {
                 ("camera", _) => {
                     relay(&mut self.frames, node, topic::colour(instance), crate::folder::empty_frame(header), go)?
                 }
-                ("tracker", _) => {
-                    relay(&mut self.poses, node, topic::pose(instance), crate::folder::no_pose(header), go)?
-                }
+                ("tracker", _) => relay(
+                    &mut self.poses,
+                    node,
+                    topic::pose(instance),
+                    Pose::none(header, "the recording ends here"),
+                    go,
+                )?,
                 _ => relay(&mut self.stripes, node, topic::stripe(instance), crate::folder::no_stripe(header), go)?,
             };
         }

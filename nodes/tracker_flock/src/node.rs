@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use kit::{Go, Node, Output};
 use serial_line::{HostClock, News, Session};
 use std::time::Duration;
-use wire::{Clock, Header, Phase, Pose, Quality, RigidPose, topic};
+use wire::{Clock, Header, Phase, Pose, topic};
 
 /// How long the line may be quiet before the operator is listened to.
 const NAP: Duration = Duration::from_millis(20);
@@ -79,7 +79,7 @@ fn scan(
     let header =
         Header { scan: go.scan, phase: Phase::End, stamp_nanos: last + 1, clock: Clock::System, ..Header::default() };
     for output in outputs {
-        output.send(end(header))?;
+        output.send(Pose::none(header, "the scan has ended"))?;
     }
     node.finished(&header)
 }
@@ -89,17 +89,5 @@ fn tell(news: News) {
         News::Streaming(found) => tracing::info!("{found}"),
         News::Trouble(trouble) => tracing::error!("{trouble}"),
         News::Noisy(sentence) => tracing::warn!("{sentence}"),
-    }
-}
-
-fn end(header: Header) -> Pose {
-    Pose {
-        header,
-        world_from_body: RigidPose::IDENTITY,
-        position_sigma_m: [0.0; 3],
-        rotation_sigma_rad: [0.0; 3],
-        rotation_lag_nanos: 0,
-        quality: Quality::Lost,
-        reason: "the scan has ended".to_owned(),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::TrackerSim;
 use kit::Node;
-use wire::{Header, Phase, Pose, Quality, RigidPose, topic};
+use wire::{Header, Phase, Pose, topic};
 use world::Setup;
 
 /// Sends the readings of one scan after the other until it is told to stop.
@@ -27,20 +27,8 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             node.finished(&header)?;
         }
         let header = Header { scan: go.scan, phase: Phase::End, stamp_nanos: last + 1, ..Header::default() };
-        poses.send(end(header))?;
+        poses.send(Pose::none(header, "the scan has ended"))?;
         node.finished(&header)?;
     }
     node.close()
-}
-
-fn end(header: Header) -> Pose {
-    Pose {
-        header,
-        world_from_body: RigidPose::IDENTITY,
-        position_sigma_m: [0.0; 3],
-        rotation_sigma_rad: [0.0; 3],
-        rotation_lag_nanos: 0,
-        quality: Quality::Lost,
-        reason: "the scan has ended".to_owned(),
-    }
 }
