@@ -29,7 +29,9 @@ mod log;
 mod node;
 mod pace;
 mod ports;
+mod source;
 mod spec;
+mod window;
 
 pub use bus::{Bus, BusConfig, GATHERED_HISTORY, Presence, RawMessage, STREAM_HISTORY};
 pub use lifeline::Stopper;

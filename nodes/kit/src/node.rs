@@ -3,33 +3,34 @@
 use crate::health::Account;
 use crate::lifeline::Stopper;
 use crate::log::{self, Lines};
-use crate::pace::{Go, Pace, Window, system_nanos, until};
+use crate::pace::{Pace, system_nanos};
 use crate::ports::{Input, Output, Pictures, RawInput};
 use crate::spec::NodeSpec;
+use crate::window::Window;
 use anyhow::{Context as _, bail};
 use bus::{Bus, Token};
 use std::time::{Duration, Instant};
 use wire::topic::{self, Class, Topic};
-use wire::{Calibration, Clock, Header, Health, LogLine, Message, Phase, Progress, RunPhase};
+use wire::{Calibration, Clock, Header, Health, LogLine, Message, Progress, RunPhase};
 
 /// How long a node sleeps at most before it looks whether it was told to stop.
-const NAP: Duration = Duration::from_millis(50);
+pub(crate) const NAP: Duration = Duration::from_millis(50);
 const HEALTH_EVERY: Duration = Duration::from_secs(1);
-const SLOW_CONSUMER: Duration = Duration::from_secs(10);
+const LONG: Duration = Duration::from_secs(10);
 
 /// One node: its bus, its account, and whether it should stop.
 pub struct Node {
-    spec: NodeSpec,
-    bus: Bus,
-    stopper: Stopper,
+    pub(crate) spec: NodeSpec,
+    pub(crate) bus: Bus,
+    pub(crate) stopper: Stopper,
     account: Account,
     lines: Lines,
     health: Output<Health>,
     progress: Output<Progress>,
     log: Output<LogLine>,
     phases: Input<RunPhase>,
-    phase: Option<RunPhase>,
-    window: Option<Window>,
+    pub(crate) phase: Option<RunPhase>,
+    pub(crate) window: Option<Window>,
     token: Option<Token>,
 }
 
@@ -152,7 +153,7 @@ impl Node {
             if !self.wait() {
                 bail!("stopped while waiting for {}", topic.key);
             }
-            if !warned && started.elapsed() > SLOW_CONSUMER {
+            if !warned && started.elapsed() > LONG {
                 warned = true;
                 tracing::warn!("still waiting for {}: does the launch file name a rig?", topic.key);
             }
@@ -171,7 +172,7 @@ impl Node {
         self.rest(NAP)
     }
 
-    fn rest(&mut self, nap: Duration) -> bool {
+    pub(crate) fn rest(&mut self, nap: Duration) -> bool {
         self.account.rests();
         self.bus.wait(nap);
         self.account.wakes();
@@ -180,7 +181,7 @@ impl Node {
         !self.stopper.is_stopping()
     }
 
-    fn hear(&mut self) {
+    pub(crate) fn hear(&mut self) {
         while let Some(phase) = self.phases.next() {
             self.phase = Some(phase);
         }
@@ -218,65 +219,8 @@ impl Node {
         Ok(())
     }
 
-    /// For a source: waits until the nodes it needs are ready and the operator has chosen a phase. `None` when the node
-    /// was told to stop.
-    pub fn wait_for_go(&mut self, after_scan: Option<u64>) -> anyhow::Result<Option<Go>> {
-        let presence = self.bus.presence()?;
-        loop {
-            let ready = presence.nodes();
-            let all_ready = self.spec.wait_for.iter().all(|node| ready.contains(node));
-            if let Some(run) = &self.phase
-                && all_ready
-                && !matches!(run.header.phase, Phase::Aim | Phase::End)
-                && after_scan.is_none_or(|scan| run.header.scan > scan)
-            {
-                let Header { scan, phase, stamp_nanos, .. } = run.header;
-                if let Some(window) = &mut self.window {
-                    window.start_scan(scan);
-                }
-                return Ok(Some(Go { scan, phase, epoch_nanos: stamp_nanos }));
-            }
-            if !self.wait() {
-                return Ok(None);
-            }
-        }
-    }
-
-    /// For a source: waits until a message with this stamp may be sent. False when the node was told to stop, or the
-    /// operator has ended the scan.
-    pub fn wait_for_turn(&mut self, go: &Go, stamp_nanos: i64) -> bool {
-        let started = Instant::now();
-        let mut warned = false;
-        loop {
-            // A source that is behind its time never rests, and must hear the operator all the same.
-            self.hear();
-            let ended =
-                self.phase.as_ref().is_some_and(|run| run.header.phase == Phase::End || run.header.scan > go.scan);
-            if ended || self.stopper.is_stopping() {
-                return false;
-            }
-            let nap = match self.spec.pace {
-                Pace::Real => until(go.epoch_nanos, stamp_nanos),
-                Pace::Fast => {
-                    let admitted = self.window.as_mut().is_none_or(|window| window.admits(stamp_nanos));
-                    (!admitted).then_some(NAP)
-                }
-            };
-            let Some(nap) = nap else {
-                self.say();
-                return true;
-            };
-            self.rest(nap.min(NAP));
-            if !warned && self.spec.pace == Pace::Fast && started.elapsed() > SLOW_CONSUMER {
-                warned = true;
-                let slowest = self.window.as_ref().and_then(Window::slowest).unwrap_or("nobody").to_owned();
-                tracing::warn!("waiting for {slowest} for {} s", SLOW_CONSUMER.as_secs());
-            }
-        }
-    }
-
     /// Sends health when it is due, and the lines of the log. Neither may ever stop the work.
-    fn say(&mut self) {
+    pub(crate) fn say(&mut self) {
         let name = self.spec.name();
         if let Some(report) = self.account.due(&name, HEALTH_EVERY) {
             self.send_health(report);

@@ -1,11 +1,8 @@
 //! When a source may send: in real time, or as fast as the slowest of its consumers.
 
-use crate::ports::Input;
-use bus::Presence;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
-use wire::{Phase, Progress};
+use wire::Phase;
 
 /// How simulated and replayed sources keep time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -38,60 +35,4 @@ pub(crate) fn system_nanos() -> i64 {
 pub(crate) fn until(epoch_nanos: i64, stamp_nanos: i64) -> Option<Duration> {
     let left = epoch_nanos + stamp_nanos - system_nanos();
     (left > 0).then(|| Duration::from_nanos(left as u64))
-}
-
-/// How far each consumer has come.
-pub(crate) struct Window {
-    progress: Input<Progress>,
-    presence: Presence,
-    /// How often a node had become ready when it was last looked at.
-    arrivals: u64,
-    reached: BTreeMap<String, i64>,
-    scan: u64,
-    window_nanos: i64,
-    /// The stamp that was admitted last.
-    admitted: Option<i64>,
-}
-
-impl Window {
-    pub(crate) fn new(progress: Input<Progress>, presence: Presence, consumers: &[String], window_ms: u64) -> Self {
-        let reached = consumers.iter().map(|node| (node.clone(), 0)).collect();
-        let window_nanos = window_ms as i64 * 1_000_000;
-        Self { progress, presence, arrivals: 0, reached, scan: 0, window_nanos, admitted: None }
-    }
-
-    /// A new scan starts at 0 for everyone.
-    pub(crate) fn start_scan(&mut self, scan: u64) {
-        self.scan = scan;
-        self.admitted = None;
-        self.reached.values_mut().for_each(|stamp| *stamp = 0);
-    }
-
-    /// True when a message with this stamp may be sent: it lies within the window, or everybody has done all there was.
-    pub(crate) fn admits(&mut self, stamp_nanos: i64) -> bool {
-        while let Some(progress) = self.progress.next() {
-            if let Some(stamp) = self.reached.get_mut(&progress.node)
-                && progress.header.scan == self.scan
-            {
-                *stamp = (*stamp).max(progress.header.stamp_nanos);
-            }
-        }
-        let admitted = self.admitted.unwrap_or(i64::MIN);
-        // A node has come back: what was on its way to it when it died will never be reported as done, by nobody.
-        let arrivals = self.presence.arrivals();
-        if std::mem::replace(&mut self.arrivals, arrivals) != arrivals {
-            self.reached.values_mut().for_each(|stamp| *stamp = (*stamp).max(admitted));
-        }
-        let may = |reached: &i64| stamp_nanos <= reached + self.window_nanos || admitted <= *reached;
-        let admits = self.reached.values().all(may);
-        if admits {
-            self.admitted = Some(stamp_nanos);
-        }
-        admits
-    }
-
-    /// Who is furthest behind.
-    pub(crate) fn slowest(&self) -> Option<&str> {
-        self.reached.iter().min_by_key(|(_, stamp)| **stamp).map(|(node, _)| node.as_str())
-    }
 }
