@@ -43,8 +43,8 @@ pub const KINDS: &[Kind] = &[
         paths: &["scene", "object", "rig"],
         takes: |_| vec![topic::run_phase().key],
         gives: |node| vec![topic::pose(&node.instance).key],
-        defaults: defaults::<world::Setup>,
-        check: |config| check(config, |_: &world::Setup| Ok::<_, String>(())),
+        defaults: defaults::<tracker_sim::Config>,
+        check: |config| check(config, tracker_sim::Config::check),
         run: tracker_sim::node::run,
         ..PLAIN
     },
@@ -111,6 +111,17 @@ pub const KINDS: &[Kind] = &[
         defaults: defaults::<replay::node::Config>,
         check: |config| check(config, replay_file),
         run: replay::node::run,
+        ..PLAIN
+    },
+    Kind {
+        name: "fuse",
+        about: "several receivers on one handset made one pose, better turned than any of them",
+        // Which ones, its configuration says; the further stations of a Polhemus are no other node's to give.
+        takes: |_| vec![topic::pose("*").key],
+        gives: |node| vec![topic::pose(&node.instance).key],
+        defaults: defaults::<fuse::Config>,
+        check: |config| check(config, fuse::Config::check),
+        run: fuse::node::run,
         ..PLAIN
     },
     Kind {

@@ -12,13 +12,14 @@ const WORLD: &str = "world";
 const SERIAL_LINE: &str = "serial_line";
 /// Library of what is plugged in: no node.
 const DEVICES: &str = "devices";
-const NODES: [&str; 17] = [
+const NODES: [&str; 18] = [
     "camera_sim",
     "camera_v4l",
     "light",
     "tracker_sim",
     "tracker_flock",
     "tracker_polhemus",
+    "fuse",
     "stripe",
     "triangulate",
     "register",

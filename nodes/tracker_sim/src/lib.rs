@@ -6,6 +6,9 @@
 //! Readings go on for a moment behind the sweep, so that its last frames have poses on both sides; the phase `End` comes
 //! from the node, behind them.
 //!
+//! A tracker may have several receivers on one handset: [`TrackerSim::receiver`] is one of them, where it sits (`receiver` in
+//! [`Config`]). Each bends with the room at its own place; its noise comes from the seed and the name of its instance.
+//!
 //! Readings that the tracker loses are left out, and not counted in `seq`: to who listens they were never sent.
 //!
 //! ```
@@ -25,10 +28,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod config;
 #[cfg(feature = "node")]
 pub mod node;
 
-use geometry::Rig;
+pub use config::{Config, ReceiverError};
+
+use geometry::{Rig, TransformSection};
 use wire::Pose;
 use world::{Hand, HandError, Scene, SimulationError, Tracker};
 
@@ -41,6 +47,9 @@ pub enum TrackerSimError {
     /// The tracker's numbers.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// Its place on the handset.
+    #[error(transparent)]
+    Receiver(#[from] ReceiverError),
 }
 
 /// The readings of one sweep.
@@ -56,6 +65,21 @@ impl TrackerSim {
     pub fn new(scene: &Scene, rig: &Rig, seconds: f64, seed: u64) -> Result<Self, TrackerSimError> {
         let hand = Hand::new(scene, rig, seconds, seed)?;
         Ok(Self { tracker: Tracker::new(rig, hand, seed)?, index: 0, seq: 0 })
+    }
+
+    /// One of several receivers of that tracker, at a place on the handset (body_from_receiver). The hand and the room are
+    /// those of the others; noise, stamps and drop-outs are its own, by its name.
+    pub fn receiver(
+        scene: &Scene,
+        rig: &Rig,
+        seconds: f64,
+        seed: u64,
+        place: &TransformSection,
+        name: &str,
+    ) -> Result<Self, TrackerSimError> {
+        let rig = config::seen_from(rig, place)?;
+        let Self { tracker, index, seq } = Self::new(scene, &rig, seconds, seed)?;
+        Ok(Self { tracker: tracker.of_receiver(name), index, seq })
     }
 }
 

@@ -1,16 +1,19 @@
 //! The wiring: readings of the simulated tracker, in their time.
 
-use crate::TrackerSim;
+use crate::{Config, TrackerSim};
 use kit::Node;
 use wire::{Header, Phase, Pose, topic};
-use world::Setup;
 
 /// Sends the readings of one scan after the other until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
-    let setup: Setup = node.spec().config()?;
+    let Config { setup, receiver } = node.spec().config()?;
     let known = setup.open()?;
     let mut poses = node.output(&topic::pose(node.instance()))?;
-    let readings = TrackerSim::new(&known.scene, &known.rig, setup.seconds, known.seed)?;
+    let (scene, rig, seconds) = (&known.scene, &known.rig, setup.seconds);
+    let readings = match receiver {
+        None => TrackerSim::new(scene, rig, seconds, known.seed)?,
+        Some(place) => TrackerSim::receiver(scene, rig, seconds, known.seed, &place, node.instance())?,
+    };
     node.ready()?;
     let mut scanned = None;
     while let Some(go) = node.wait_for_go(scanned)? {

@@ -6,7 +6,7 @@ mod section;
 
 pub use section::TrackerSection;
 
-use crate::random::{normal, normal3, uniform};
+use crate::random::{normal, normal3, uniform, word};
 use crate::{Hand, Simulation, SimulationError};
 use field::Field;
 use geometry::{METRES_PER_MM, Rig, rigid_to_wire};
@@ -50,6 +50,11 @@ impl Tracker {
         let seed = seed.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ 0x7ac3;
         let field = Field::new(&section, seed.wrapping_add(Stream::Field as u64));
         Ok(Self { section, hand, field, seed })
+    }
+
+    /// As another receiver of the same tracker has it: noise, stamps and drop-outs are its own, the room is the same.
+    pub fn of_receiver(self, name: &str) -> Self {
+        Self { seed: name.bytes().fold(self.seed, |seed, byte| word(seed, u64::from(byte))), ..self }
     }
 
     /// How many readings the sweep has, lost ones included.

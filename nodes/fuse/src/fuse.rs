@@ -1,0 +1,280 @@
+//! Poses of the receivers to poses of the body, moment by moment.
+
+use crate::agree::agree;
+use crate::evidence::Evidence;
+use crate::solve::Sighting;
+use crate::tell::{self, Remarks};
+use crate::track::{Listening, Track, Waiting};
+use crate::{Config, ConfigError};
+use geometry::TimedPose;
+use nalgebra::Isometry3;
+use std::collections::{BTreeMap, VecDeque};
+use wire::{Clock, Header, Pose, Refusal};
+
+/// Holds readings until all receivers have told of their moments.
+#[derive(Debug, Clone)]
+pub struct Fuse {
+    config: Config,
+    /// body_from_receiver of each.
+    mounts: Vec<Isometry3<f64>>,
+    tracks: Vec<Track>,
+    scan: Option<Scan>,
+    fused: VecDeque<Pose>,
+    refused: BTreeMap<String, u64>,
+}
+
+/// The present scan.
+#[derive(Debug, Clone)]
+struct Scan {
+    number: u64,
+    clock: Clock,
+    /// The newest moment that was decided.
+    last_nanos: Option<i64>,
+    /// Of the end that was stamped last.
+    end: Option<Header>,
+    over: bool,
+    evidence: Evidence,
+}
+
+impl Fuse {
+    /// For the receivers of one handset.
+    pub fn new(config: Config) -> Result<Self, ConfigError> {
+        config.check()?;
+        // All of them: `check` refuses a mount that is none.
+        let mounts: Vec<_> = config.receivers.iter().filter_map(crate::Receiver::body_from_receiver).collect();
+        let tracks = vec![Track::new(); mounts.len()];
+        Ok(Self { config, mounts, tracks, scan: None, fused: VecDeque::new(), refused: BTreeMap::new() })
+    }
+
+    /// Takes a reading of a receiver, counted as the configuration has them, or the end of its stream. A higher scan starts
+    /// afresh: what waits of the one before is decided by what has come.
+    pub fn pose(&mut self, receiver: usize, pose: &Pose) {
+        let header = pose.header;
+        if receiver >= self.tracks.len() {
+            return self.refuse("pose of a receiver that is not configured".to_owned());
+        }
+        if self.scan.as_ref().is_none_or(|scan| header.scan > scan.number) {
+            self.begin(&header);
+        }
+        let (Some(scan), track) = (&mut self.scan, &mut self.tracks[receiver]) else { return };
+        let taken = if header.scan < scan.number {
+            Err("pose of an older scan")
+        } else if scan.over || track.listening == Listening::Ended {
+            Err("pose behind the end of its scan")
+        } else if header.is_end() {
+            track.listening = Listening::Ended;
+            scan.end = Some(scan.end.filter(|end| end.stamp_nanos >= header.stamp_nanos).unwrap_or(header));
+            Ok(())
+        } else if header.clock != scan.clock {
+            Err("pose on another clock than the first")
+        } else {
+            track.take(pose, self.config.use_degraded).map_err(|bad| bad.reason())
+        };
+        // Whoever has caught up is waited for again.
+        if track.listening == Listening::Silent && track.heard() > scan.last_nanos {
+            track.listening = Listening::Live;
+        }
+        if let Err(reason) = taken {
+            self.refuse_of(receiver, reason);
+        }
+        self.serve();
+    }
+
+    fn begin(&mut self, header: &Header) {
+        self.tracks.iter_mut().for_each(|track| track.listening = Listening::Ended);
+        self.serve();
+        self.tracks.fill_with(Track::new);
+        self.scan = Some(Scan {
+            number: header.scan,
+            clock: header.clock,
+            last_nanos: None,
+            end: None,
+            over: false,
+            evidence: Evidence::default(),
+        });
+    }
+
+    /// The poses that are ready, in the order of their stamps.
+    pub fn drain(&mut self) -> impl Iterator<Item = Pose> + '_ {
+        self.fused.drain(..)
+    }
+
+    /// What was refused since the last call.
+    pub fn take_refused(&mut self) -> Vec<Refusal> {
+        let refused = std::mem::take(&mut self.refused);
+        refused.into_iter().map(|(reason, count)| Refusal { reason, count }).collect()
+    }
+
+    /// The newest moment that was decided in this scan, and the stamp of the oldest reading that waits: as long as neither
+    /// changes, nothing goes on.
+    pub fn standing(&self) -> [Option<i64>; 2] {
+        [self.last_nanos(), self.oldest().map(|(_, oldest)| oldest.header.stamp_nanos)]
+    }
+
+    fn last_nanos(&self) -> Option<i64> {
+        self.scan.as_ref()?.last_nanos
+    }
+
+    /// The receivers that keep a moment waiting although another is [`Config::most_wait_ms`] past it, or although all
+    /// others have ended. By the stamps alone it cannot be told whether they are silent or their messages on the way: who
+    /// has a clock on the wall, and patience, calls [`Fuse::go_on_without`].
+    pub fn overdue(&self) -> Vec<usize> {
+        let live = |track: &Track| track.listening == Listening::Live;
+        let ended = self.tracks.iter().any(|track| track.listening == Listening::Ended);
+        let (awaited, passed): (Vec<usize>, bool) = match self.oldest() {
+            Some((_, oldest)) => {
+                let stamp_nanos = oldest.header.stamp_nanos;
+                let bound = stamp_nanos.saturating_add(self.config.most_wait_nanos());
+                (self.awaited(stamp_nanos).collect(), self.tracks.iter().any(|track| track.heard() >= Some(bound)))
+            }
+            None => ((0..self.tracks.len()).filter(|&index| live(&self.tracks[index])).collect(), false),
+        };
+        let all_awaited = awaited.len() == self.tracks.iter().filter(|track| live(track)).count();
+        if passed || ended && all_awaited { awaited } else { Vec::new() }
+    }
+
+    /// Waits no longer for a receiver, until it has caught up with the others.
+    pub fn go_on_without(&mut self, receiver: usize) {
+        if let Some(track) = self.tracks.get_mut(receiver).filter(|track| track.listening == Listening::Live) {
+            track.listening = Listening::Silent;
+            self.serve();
+        }
+    }
+
+    /// Whether others go on without this receiver.
+    pub fn is_silent(&self, receiver: usize) -> bool {
+        self.tracks.get(receiver).is_some_and(|track| track.listening == Listening::Silent)
+    }
+
+    /// When all receivers have ended, but for those that are silent: the end of the fused stream, and how well they agreed.
+    /// Told once a scan.
+    pub fn end(&mut self) -> Option<(Header, Evidence)> {
+        let waiting = self.tracks.iter().any(|track| track.listening == Listening::Live || !track.waiting.is_empty());
+        let scan = self.scan.as_mut().filter(|scan| !scan.over && !waiting)?;
+        let end = scan.end?;
+        scan.over = true;
+        Some((end.derived(), scan.evidence))
+    }
+
+    /// The oldest reading that is not decided yet, and whose it is.
+    fn oldest(&self) -> Option<(usize, Waiting)> {
+        let fronts = self.tracks.iter().enumerate();
+        let fronts = fronts.filter_map(|(index, track)| Some((index, *track.waiting.front()?)));
+        fronts.min_by_key(|(index, waiting)| (waiting.header.stamp_nanos, *index))
+    }
+
+    fn awaited(&self, stamp_nanos: i64) -> impl Iterator<Item = usize> + '_ {
+        let gap_nanos = self.config.most_gap_nanos();
+        let tracks = self.tracks.iter().enumerate();
+        tracks.filter(move |(_, track)| track.is_waited_for(stamp_nanos, gap_nanos)).map(|(index, _)| index)
+    }
+
+    /// Decides all readings of which every receiver has told.
+    fn serve(&mut self) {
+        while let Some((receiver, oldest)) = self.oldest() {
+            if self.awaited(oldest.header.stamp_nanos).next().is_some() {
+                return;
+            }
+            self.tracks[receiver].waiting.pop_front();
+            self.decide(receiver, oldest);
+        }
+    }
+
+    /// A reading is a moment of the body when its receiver is the first that tells a pose there. When nobody does, the
+    /// first that speaks says so.
+    fn decide(&mut self, receiver: usize, reading: Waiting) {
+        let (stamp_nanos, gap_nanos) = (reading.header.stamp_nanos, self.config.most_gap_nanos());
+        match self.last_nanos() {
+            Some(last) if stamp_nanos < last => return self.refuse_of(receiver, "pose that came too late"),
+            Some(last) if stamp_nanos == last => return,
+            _ => {}
+        }
+        let told: Vec<_> = self.tracks.iter().map(|track| track.at(stamp_nanos, gap_nanos)).collect();
+        let speaks = |track: &Track| track.listening != Listening::Silent && track.heard() >= Some(stamp_nanos);
+        let first_to_speak = self.tracks.iter().position(speaks);
+        let pose = match told.iter().position(Result::is_ok) {
+            Some(first) if first == receiver && reading.usable => self.fuse(reading.header, &told),
+            None if first_to_speak == Some(receiver) => {
+                let remarks = self.remarks(stamp_nanos, &told);
+                Some(tell::nobody(reading.header, &remarks))
+            }
+            _ => None,
+        };
+        let (Some(pose), Some(scan)) = (pose, &mut self.scan) else { return };
+        scan.evidence.note(&pose);
+        scan.last_nanos = Some(stamp_nanos);
+        self.fused.push_back(pose);
+        self.tracks.iter_mut().for_each(|track| track.forget_before(stamp_nanos));
+    }
+
+    fn fuse(&mut self, header: Header, told: &[Result<TimedPose, geometry::NoPose>]) -> Option<Pose> {
+        let present: Vec<usize> = (0..told.len()).filter(|&index| told[index].is_ok()).collect();
+        // Alone, a receiver is apart from nobody.
+        let apart = if present.len() > 1 { self.config.apart() } else { [0.0; 2] };
+        let sighting = |(pose, mount): (&TimedPose, &Isometry3<f64>)| Sighting {
+            body_from_receiver: *mount,
+            world_from_receiver: pose.pose,
+            position_sigma_m: pose.position_sigma_m.hypot(apart[0]),
+            rotation_sigma_rad: pose.rotation_sigma_rad.hypot(apart[1]),
+        };
+        let poses = told.iter().zip(&self.mounts).filter_map(|(pose, mount)| Some((pose.as_ref().ok()?, mount)));
+        let sightings: Vec<Sighting> = poses.map(sighting).collect();
+        match agree(&sightings, self.config.outlier_sigmas) {
+            Some(Ok(agreement)) => {
+                let mut remarks = self.remarks(header.stamp_nanos, told);
+                for &outlier in &agreement.outliers {
+                    let receiver = present[outlier];
+                    remarks.add(self.name(receiver), format_args!("{}", tell::off(&sightings[outlier], &agreement)));
+                    self.refuse_of(receiver, "moment at which it is an outlier");
+                }
+                if let Some(scan) = &mut self.scan {
+                    scan.evidence.agree(&agreement);
+                }
+                Some(tell::agreed(header, &agreement, remarks))
+            }
+            Some(Err(contradiction)) => {
+                let names: Vec<&str> = present.iter().map(|&receiver| self.name(receiver)).collect();
+                let pose = tell::contradicted(header, &names, contradiction);
+                self.refuse("moment at which the receivers contradict each other".to_owned());
+                Some(pose)
+            }
+            None => {
+                self.refuse("moment whose numbers overflow".to_owned());
+                None
+            }
+        }
+    }
+
+    /// Who is missing or not well at a moment; the former are counted.
+    fn remarks(&mut self, stamp_nanos: i64, told: &[Result<TimedPose, geometry::NoPose>]) -> Remarks {
+        let mut remarks = Remarks::default();
+        for (receiver, pose) in told.iter().enumerate() {
+            let track = &self.tracks[receiver];
+            match pose {
+                Err(why) => {
+                    let absence = tell::absence(track.listening, *why);
+                    remarks.add(self.name(receiver), format_args!("{absence}"));
+                    self.refuse_of(receiver, &format!("moment without it: it {absence}"));
+                }
+                Ok(_) => {
+                    if let Some(reason) = track.degraded(stamp_nanos, self.config.most_gap_nanos()) {
+                        remarks.add(self.name(receiver), format_args!("is degraded: {reason}"));
+                    }
+                }
+            }
+        }
+        remarks
+    }
+
+    fn name(&self, receiver: usize) -> &str {
+        &self.config.receivers[receiver].tracker
+    }
+
+    fn refuse_of(&mut self, receiver: usize, reason: &str) {
+        self.refuse(format!("{}: {reason}", self.name(receiver)));
+    }
+
+    fn refuse(&mut self, reason: String) {
+        *self.refused.entry(reason).or_default() += 1;
+    }
+}
