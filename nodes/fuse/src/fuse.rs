@@ -1,12 +1,8 @@
 //! Poses of the receivers to poses of the body, moment by moment.
 
-use crate::agree::agree;
 use crate::evidence::Evidence;
-use crate::solve::Sighting;
-use crate::tell::{self, Remarks};
 use crate::track::{Listening, Track, Waiting};
 use crate::{Config, ConfigError};
-use geometry::TimedPose;
 use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
 use wire::{Clock, Header, Pose, Refusal};
@@ -14,26 +10,26 @@ use wire::{Clock, Header, Pose, Refusal};
 /// Holds readings until all receivers have told of their moments.
 #[derive(Debug, Clone)]
 pub struct Fuse {
-    config: Config,
+    pub(crate) config: Config,
     /// body_from_receiver of each.
-    mounts: Vec<Isometry3<f64>>,
-    tracks: Vec<Track>,
-    scan: Option<Scan>,
-    fused: VecDeque<Pose>,
+    pub(crate) mounts: Vec<Isometry3<f64>>,
+    pub(crate) tracks: Vec<Track>,
+    pub(crate) scan: Option<Scan>,
+    pub(crate) fused: VecDeque<Pose>,
     refused: BTreeMap<String, u64>,
 }
 
 /// The present scan.
 #[derive(Debug, Clone)]
-struct Scan {
+pub(crate) struct Scan {
     number: u64,
     clock: Clock,
     /// The newest moment that was decided.
-    last_nanos: Option<i64>,
+    pub last_nanos: Option<i64>,
     /// Of the end that was stamped last.
     end: Option<Header>,
     over: bool,
-    evidence: Evidence,
+    pub evidence: Evidence,
 }
 
 impl Fuse {
@@ -111,7 +107,7 @@ impl Fuse {
         [self.last_nanos(), self.oldest().map(|(_, oldest)| oldest.header.stamp_nanos)]
     }
 
-    fn last_nanos(&self) -> Option<i64> {
+    pub(crate) fn last_nanos(&self) -> Option<i64> {
         self.scan.as_ref()?.last_nanos
     }
 
@@ -157,124 +153,27 @@ impl Fuse {
     }
 
     /// The oldest reading that is not decided yet, and whose it is.
-    fn oldest(&self) -> Option<(usize, Waiting)> {
+    pub(crate) fn oldest(&self) -> Option<(usize, Waiting)> {
         let fronts = self.tracks.iter().enumerate();
         let fronts = fronts.filter_map(|(index, track)| Some((index, *track.waiting.front()?)));
         fronts.min_by_key(|(index, waiting)| (waiting.header.stamp_nanos, *index))
     }
 
-    fn awaited(&self, stamp_nanos: i64) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn awaited(&self, stamp_nanos: i64) -> impl Iterator<Item = usize> + '_ {
         let gap_nanos = self.config.most_gap_nanos();
         let tracks = self.tracks.iter().enumerate();
         tracks.filter(move |(_, track)| track.is_waited_for(stamp_nanos, gap_nanos)).map(|(index, _)| index)
     }
 
-    /// Decides all readings of which every receiver has told.
-    fn serve(&mut self) {
-        while let Some((receiver, oldest)) = self.oldest() {
-            if self.awaited(oldest.header.stamp_nanos).next().is_some() {
-                return;
-            }
-            self.tracks[receiver].waiting.pop_front();
-            self.decide(receiver, oldest);
-        }
-    }
-
-    /// A reading is a moment of the body when its receiver is the first that tells a pose there. When nobody does, the
-    /// first that speaks says so.
-    fn decide(&mut self, receiver: usize, reading: Waiting) {
-        let (stamp_nanos, gap_nanos) = (reading.header.stamp_nanos, self.config.most_gap_nanos());
-        match self.last_nanos() {
-            Some(last) if stamp_nanos < last => return self.refuse_of(receiver, "pose that came too late"),
-            Some(last) if stamp_nanos == last => return,
-            _ => {}
-        }
-        let told: Vec<_> = self.tracks.iter().map(|track| track.at(stamp_nanos, gap_nanos)).collect();
-        let speaks = |track: &Track| track.listening != Listening::Silent && track.heard() >= Some(stamp_nanos);
-        let first_to_speak = self.tracks.iter().position(speaks);
-        let pose = match told.iter().position(Result::is_ok) {
-            Some(first) if first == receiver && reading.usable => self.fuse(reading.header, &told),
-            None if first_to_speak == Some(receiver) => {
-                let remarks = self.remarks(stamp_nanos, &told);
-                Some(tell::nobody(reading.header, &remarks))
-            }
-            _ => None,
-        };
-        let (Some(pose), Some(scan)) = (pose, &mut self.scan) else { return };
-        scan.evidence.note(&pose);
-        scan.last_nanos = Some(stamp_nanos);
-        self.fused.push_back(pose);
-        self.tracks.iter_mut().for_each(|track| track.forget_before(stamp_nanos));
-    }
-
-    fn fuse(&mut self, header: Header, told: &[Result<TimedPose, geometry::NoPose>]) -> Option<Pose> {
-        let present: Vec<usize> = (0..told.len()).filter(|&index| told[index].is_ok()).collect();
-        // Alone, a receiver is apart from nobody.
-        let apart = if present.len() > 1 { self.config.apart() } else { [0.0; 2] };
-        let sighting = |(pose, mount): (&TimedPose, &Isometry3<f64>)| Sighting {
-            body_from_receiver: *mount,
-            world_from_receiver: pose.pose,
-            position_sigma_m: pose.position_sigma_m.hypot(apart[0]),
-            rotation_sigma_rad: pose.rotation_sigma_rad.hypot(apart[1]),
-        };
-        let poses = told.iter().zip(&self.mounts).filter_map(|(pose, mount)| Some((pose.as_ref().ok()?, mount)));
-        let sightings: Vec<Sighting> = poses.map(sighting).collect();
-        match agree(&sightings, self.config.outlier_sigmas) {
-            Some(Ok(agreement)) => {
-                let mut remarks = self.remarks(header.stamp_nanos, told);
-                for &outlier in &agreement.outliers {
-                    let receiver = present[outlier];
-                    remarks.add(self.name(receiver), format_args!("{}", tell::off(&sightings[outlier], &agreement)));
-                    self.refuse_of(receiver, "moment at which it is an outlier");
-                }
-                if let Some(scan) = &mut self.scan {
-                    scan.evidence.agree(&agreement);
-                }
-                Some(tell::agreed(header, &agreement, remarks))
-            }
-            Some(Err(contradiction)) => {
-                let names: Vec<&str> = present.iter().map(|&receiver| self.name(receiver)).collect();
-                let pose = tell::contradicted(header, &names, contradiction);
-                self.refuse("moment at which the receivers contradict each other".to_owned());
-                Some(pose)
-            }
-            None => {
-                self.refuse("moment whose numbers overflow".to_owned());
-                None
-            }
-        }
-    }
-
-    /// Who is missing or not well at a moment; the former are counted.
-    fn remarks(&mut self, stamp_nanos: i64, told: &[Result<TimedPose, geometry::NoPose>]) -> Remarks {
-        let mut remarks = Remarks::default();
-        for (receiver, pose) in told.iter().enumerate() {
-            let track = &self.tracks[receiver];
-            match pose {
-                Err(why) => {
-                    let absence = tell::absence(track.listening, *why);
-                    remarks.add(self.name(receiver), format_args!("{absence}"));
-                    self.refuse_of(receiver, &format!("moment without it: it {absence}"));
-                }
-                Ok(_) => {
-                    if let Some(reason) = track.degraded(stamp_nanos, self.config.most_gap_nanos()) {
-                        remarks.add(self.name(receiver), format_args!("is degraded: {reason}"));
-                    }
-                }
-            }
-        }
-        remarks
-    }
-
-    fn name(&self, receiver: usize) -> &str {
+    pub(crate) fn name(&self, receiver: usize) -> &str {
         &self.config.receivers[receiver].tracker
     }
 
-    fn refuse_of(&mut self, receiver: usize, reason: &str) {
+    pub(crate) fn refuse_of(&mut self, receiver: usize, reason: &str) {
         self.refuse(format!("{}: {reason}", self.name(receiver)));
     }
 
-    fn refuse(&mut self, reason: String) {
+    pub(crate) fn refuse(&mut self, reason: String) {
         *self.refused.entry(reason).or_default() += 1;
     }
 }

@@ -57,6 +57,7 @@ mod agree;
 mod config;
 mod evidence;
 mod fuse;
+mod moment;
 #[cfg(feature = "node")]
 pub mod node;
 mod solve;
