@@ -62,7 +62,7 @@ fn each_crate_knows_only_what_it_may() {
         ("bus", vec!["wire"]),
         ("kit", vec!["wire", "bus"]),
         (WORLD, vec!["wire", "geometry", "formats"]),
-        (SERIAL_LINE, vec![]),
+        (SERIAL_LINE, vec!["wire", "kit"]),
         (DEVICES, vec![]),
         // The proof of camera_v4l on a real driver.
         ("on_vivid", vec!["camera_v4l", DEVICES, "wire"]),

@@ -1,18 +1,7 @@
 //! What a session needs of a device, and what it tells of it.
 
-use crate::{Line, LineError};
+use crate::{Line, LineError, Tally};
 use std::time::Duration;
-
-/// What a decoder has seen since it was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Tally {
-    /// Whole records.
-    pub records: u64,
-    /// Records that began and did not end as they should.
-    pub broken: u64,
-    /// Bytes that belong to no whole record.
-    pub skipped_bytes: u64,
-}
 
 /// Why nothing is measured.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -13,6 +13,18 @@ pub struct FaultsConfig {
     pub lost_ppm: u32,
     /// Before so many of a million deliveries come up to 64 bytes of anything.
     pub garbage_ppm: u32,
+    /// The line is cut every so many nanoseconds of the sender's clock, the first time after so many; 0 is never.
+    pub cut_every_nanos: i64,
+    /// For so long nothing passes then, either way.
+    pub cut_for_nanos: i64,
+}
+
+impl FaultsConfig {
+    /// Whether the line is cut at a moment of the sender's clock.
+    pub fn is_cut(&self, nanos: i64) -> bool {
+        let every = self.cut_every_nanos;
+        every > 0 && nanos >= every && nanos % every < self.cut_for_nanos
+    }
 }
 
 /// Bytes, and when they arrive.
@@ -40,8 +52,16 @@ impl Faults {
         Self { config, state: config.seed, last_due: i64::MIN }
     }
 
+    /// Whether the line is cut at a moment of the sender's clock.
+    pub fn is_cut(&self, nanos: i64) -> bool {
+        self.config.is_cut(nanos)
+    }
+
     /// What becomes of bytes that were sent at a moment.
     pub fn deliver(&mut self, sent_nanos: i64, bytes: &[u8]) -> Delivery {
+        if self.is_cut(sent_nanos) {
+            return Delivery { due_nanos: self.last_due.max(sent_nanos), bytes: Vec::new() };
+        }
         let mut arriving = Vec::with_capacity(bytes.len());
         if self.happens(self.config.garbage_ppm) {
             let count = self.below(64) + 1;

@@ -22,7 +22,16 @@ impl HostClock {
 
     /// A moment of this clock on the system clock as it stands now, in nanoseconds since the epoch.
     pub fn system_nanos(&self, moment_nanos: i64) -> i64 {
+        moment_nanos + self.ahead_nanos()
+    }
+
+    /// A moment of the system clock on this one, as they stand now.
+    pub fn from_system(&self, system_nanos: i64) -> i64 {
+        system_nanos - self.ahead_nanos()
+    }
+
+    fn ahead_nanos(&self) -> i64 {
         let system = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as i64);
-        system - self.now_nanos() + moment_nanos
+        system - self.now_nanos()
     }
 }

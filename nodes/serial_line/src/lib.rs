@@ -8,19 +8,24 @@
 //! - [`DeviceClock`]: for devices that send the time of their own clock.
 //! - [`Envelope`]: the line under all arrivals, which both stand on: delays only add.
 //!
+//! What trackers on such lines have in common is here as well, since nodes never depend on nodes: [`PoseTracker`], what
+//! turns records into poses; [`Rounds`], whose record it is; [`Tally`], what a decoder has seen; [`Step`], what a device
+//! is told; [`Emulated`], [`Speech`] and [`Faults`], a device that is played, and what goes wrong on real lines.
+//!
 //! With the feature `serial`:
 //!
 //! - `Line`: a port, raw and without flow control, with its modem lines as the device wants them; each failure is a
 //!   sentence that says what to do.
 //! - `Session`: a thread that opens, sets up, listens, names what is wrong within a second, and starts again, for ever.
-//! - `Pty`, `Faults`: the other end of a line, for emulators: a pseudo-terminal, and what goes wrong on real lines.
+//! - `Pty`: the other end of a line, for emulators: a pseudo-terminal.
 //!
-//! Both trackers need this and nodes never depend on nodes; it is no part of `kit`, which brings the bus. It is the only
-//! crate that names serialport.
+//! With the feature `node`, which brings the bus: `node::run`, the life of a node that sends what a tracker says. This is
+//! the only crate that names serialport.
 
 #[cfg(feature = "serial")]
 mod device;
 mod device_clock;
+mod emulated;
 mod envelope;
 mod faults;
 mod host_clock;
@@ -28,20 +33,27 @@ mod host_clock;
 mod line;
 #[cfg(feature = "serial")]
 mod line_error;
+#[cfg(feature = "node")]
+pub mod node;
 #[cfg(feature = "serial")]
 mod noise;
+mod pose_tracker;
 #[cfg(feature = "serial")]
 mod pty;
 mod rate_lock;
 #[cfg(feature = "serial")]
 mod ring;
+mod rounds;
 #[cfg(feature = "serial")]
 mod session;
+mod step;
+mod tally;
 mod wire_time;
 
 #[cfg(feature = "serial")]
-pub use device::{Arrived, Counts, Device, Heard, News, Tally, Trouble};
+pub use device::{Arrived, Counts, Device, Heard, News, Trouble};
 pub use device_clock::DeviceClock;
+pub use emulated::{Emulated, Speech};
 pub use envelope::{Envelope, FittedLine};
 pub use faults::{Delivery, Faults, FaultsConfig};
 pub use host_clock::HostClock;
@@ -49,11 +61,15 @@ pub use host_clock::HostClock;
 pub use line::{Chunk, Line, LineSettings};
 #[cfg(feature = "serial")]
 pub use line_error::LineError;
+pub use pose_tracker::{PoseTracker, SensorPose};
 #[cfg(feature = "serial")]
-pub use pty::{Emulated, Pty, PtyError};
+pub use pty::{Pty, PtyError};
 pub use rate_lock::RateLock;
+pub use rounds::{Rounds, Turn};
 #[cfg(feature = "serial")]
 pub use session::Session;
+pub use step::Step;
+pub use tally::Tally;
 pub use wire_time::wire_nanos;
 
 /// A moment of arrival without what delayed it.

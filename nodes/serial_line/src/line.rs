@@ -1,6 +1,6 @@
 //! An open port.
 
-use crate::{HostClock, LineError};
+use crate::{HostClock, LineError, Step};
 use serialport::{ClearBuffer, ErrorKind, SerialPort as _, TTYPort};
 use std::io::{ErrorKind as IoKind, Read as _, Write as _};
 use std::path::PathBuf;
@@ -11,6 +11,10 @@ use std::time::{Duration, Instant};
 /// Waits are cut into pieces of this length, so that a node that was told to stop does.
 const NAP: Duration = Duration::from_millis(20);
 const MOST_WRITE: Duration = Duration::from_millis(500);
+/// A line on which nothing has come for so long has run dry.
+const QUIET: Duration = Duration::from_millis(60);
+/// Who was told to be quiet, and is not by then, did not understand.
+const NEVER_QUIET: Duration = Duration::from_millis(700);
 
 /// How a port is opened: 8 data bits, no parity, 1 stop bit, no flow control (data hold the bytes of XON and XOFF).
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -120,18 +124,27 @@ impl Line {
         }
     }
 
-    /// Throws away what comes until nothing has come for `quiet`; false when it never fell quiet within `most`.
-    pub fn drain(&mut self, quiet: Duration, most: Duration) -> Result<bool, LineError> {
+    /// Says one thing after the other.
+    pub fn carry_out(&mut self, steps: &[Step]) -> Result<(), LineError> {
+        for step in steps {
+            self.write(&step.send)?;
+            self.pause(step.wait)?;
+        }
+        Ok(())
+    }
+
+    /// Throws away what comes until nothing has come for 60 ms; false when it did not fall quiet.
+    pub fn drain(&mut self) -> Result<bool, LineError> {
         let started = Instant::now();
         let mut last = Instant::now();
         let mut scrap = [0u8; 512];
         // What the system has gathered so far is old; a port without such a buffer has none to clear.
         let _ = self.port.clear(ClearBuffer::Input);
-        while last.elapsed() < quiet {
+        while last.elapsed() < QUIET {
             if self.read(&mut scrap)?.len > 0 {
                 last = Instant::now();
             }
-            if started.elapsed() > most {
+            if started.elapsed() > NEVER_QUIET {
                 return Ok(false);
             }
         }

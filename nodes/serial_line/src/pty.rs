@@ -1,6 +1,6 @@
 //! The device's end of a line that needs no hardware: a pseudo-terminal with an emulated device behind it.
 
-use crate::{Delivery, Faults, FaultsConfig, HostClock};
+use crate::{Delivery, Emulated, Faults, FaultsConfig, HostClock};
 use serialport::{SerialPort as _, TTYPort};
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
@@ -9,14 +9,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
-
-/// A device that is played: bytes in, bytes out, each with its time on the host's clock.
-pub trait Emulated: Send + 'static {
-    /// The host has sent bytes.
-    fn hear(&mut self, bytes: &[u8], now_nanos: i64);
-    /// The next bytes that have left the device by now, and when the last of them did; `None` when there are no more.
-    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)>;
-}
 
 /// Why there is no pseudo-terminal.
 #[derive(Debug, thiserror::Error)]
@@ -110,6 +102,8 @@ fn play<E: Emulated>(
 ) {
     let mut heard = [0u8; 256];
     match port.read(&mut heard) {
+        // A cut line does not carry the host's words either.
+        Ok(_) if faults.is_cut(clock.now_nanos()) => {}
         Ok(count) => device.lock().unwrap_or_else(PoisonError::into_inner).hear(&heard[..count], clock.now_nanos()),
         Err(error) if error.kind() == std::io::ErrorKind::TimedOut => {}
         // Nobody has it open.

@@ -39,6 +39,8 @@ pub struct Config {
     pub rate_hz: f64,
     /// Send every 1st, 2nd, 8th or 32nd measurement.
     pub report_every: u8,
+    /// Beside a simulated camera: stamps count from the beginning of the scan, as that camera's do.
+    pub scan_clock: bool,
     /// The six-tap filter against the mains: quieter, and older by two and a half measurements.
     pub ac_wide_filter: bool,
     /// The two-tap filter against the mains: older by half a measurement.
@@ -134,6 +136,7 @@ impl Default for Config {
             line_frequency_hz: 50,
             rate_hz: 103.0,
             report_every: 1,
+            scan_clock: false,
             ac_wide_filter: false,
             ac_narrow_filter: true,
             dc_filter: true,

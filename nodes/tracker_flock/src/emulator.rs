@@ -1,40 +1,44 @@
 //! A flock that is played, byte for byte: commands in, records and answers out, each with its time. No port and no clock
-//! of its own; with the feature `serial` it sits behind a pseudo-terminal (`serial_line::Pty`).
+//! of its own; `serial_line::Pty` puts it behind a pseudo-terminal.
 //!
 //! It does what the manual says: it needs an auto-configuration when it has an address, hears nothing while it carries
 //! that out, answers for all units in group mode, lowest address first, and mirrors positions into the hemisphere that it
 //! was told. A record leaves at the end of its cycle; position and orientation in it are older, by different times.
 
-mod speech;
+mod answers;
+mod commands;
 mod unit;
 
 use crate::protocol::reading::QuaternionSense;
-use crate::protocol::records::{MOST_BYTES, encode};
+use crate::protocol::records::encode;
+use commands::next_command;
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::wire_nanos;
-use speech::{Command, next_command};
-use std::collections::VecDeque;
+use serial_line::{Emulated, Speech};
 use unit::Unit;
 
 /// The flock that is played.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EmulatorConfig {
-    /// How many units, each with a sensor, addresses from 1; 0: a bird alone.
+    /// How many units, addresses from 1; 0: a bird alone.
     pub units: u8,
+    /// The address of the first unit with a sensor: those before it are extended range controllers.
+    pub first_sensor: u8,
     /// Paces what it sends.
     pub baud: u32,
     /// Until the host changes it.
     pub rate_hz: f64,
     /// Which way its quaternions turn.
     pub quaternion: QuaternionSense,
-    /// How old a position is when its record leaves.
+    /// How old a position is when its record leaves, when no filter against the mains is on.
     pub position_latency_nanos: i64,
-    /// How old an orientation is when its record leaves.
+    /// The same of an orientation.
     pub rotation_latency_nanos: i64,
-    /// Filter as the bird does: steady at rest, and late in motion. Without: the truth.
+    /// The adaptive filter, as the bird has it: steady at rest, and late in motion. Without: the truth.
     pub filters: bool,
     /// What the measure of metal says.
     pub metal: u8,
+    /// It changes its mind so often about the half of space that its sensors are in; 0 is never.
+    pub flip_every_nanos: i64,
     /// The error that it reports when it is asked first.
     pub error: u8,
 }
@@ -43,6 +47,7 @@ impl Default for EmulatorConfig {
     fn default() -> Self {
         Self {
             units: 0,
+            first_sensor: 1,
             baud: 115_200,
             rate_hz: 103.0,
             quaternion: QuaternionSense::AsMatrix,
@@ -50,8 +55,21 @@ impl Default for EmulatorConfig {
             rotation_latency_nanos: 2_000_000,
             filters: false,
             metal: 3,
+            flip_every_nanos: 0,
             error: 0,
         }
+    }
+}
+
+impl EmulatorConfig {
+    /// Whether the unit with this address has a sensor.
+    fn has_sensor(&self, address: u8) -> bool {
+        self.units == 0 || address >= self.first_sensor
+    }
+
+    /// Whether it believes the wrong half of space at a moment.
+    fn is_flipped(&self, nanos: i64) -> bool {
+        self.flip_every_nanos > 0 && (nanos / self.flip_every_nanos) % 2 != 0
     }
 }
 
@@ -89,8 +107,7 @@ pub struct FlockEmulator {
     error: u8,
     cycle: u64,
     cycle_nanos: i64,
-    saying: VecDeque<(i64, Vec<u8>)>,
-    line_free_at: i64,
+    speech: Speech,
 }
 
 /// How long an auto-configuration takes; the manual bids to wait a little longer.
@@ -105,6 +122,7 @@ impl FlockEmulator {
             configured: config.units == 0,
             rate_hz: config.rate_hz,
             error: config.error,
+            speech: Speech::new(config.baud),
             config,
             world,
             mood: Mood::Well,
@@ -116,33 +134,12 @@ impl FlockEmulator {
             report_every: 1,
             cycle: 0,
             cycle_nanos: i64::MIN,
-            saying: VecDeque::new(),
-            line_free_at: i64::MIN,
         }
     }
 
     /// Makes it ill, or well again.
     pub fn set_mood(&mut self, mood: Mood) {
         self.mood = mood;
-    }
-
-    /// The host has sent bytes.
-    pub fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        if now_nanos < self.busy_until || self.mood != Mood::Well {
-            return;
-        }
-        self.advance(now_nanos);
-        self.heard.extend_from_slice(bytes);
-        while let Some((command, used)) = next_command(&self.heard) {
-            self.heard.drain(..used);
-            self.obey(command, now_nanos);
-        }
-    }
-
-    /// The next bytes that have left by now, and when the last of them did.
-    pub fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
-        self.advance(now_nanos);
-        if self.saying.front().is_some_and(|(left, _)| *left <= now_nanos) { self.saying.pop_front() } else { None }
     }
 
     /// The parameters as the host left them: address, format's number, filters, hemisphere, mains.
@@ -167,20 +164,21 @@ impl FlockEmulator {
             match self.mood {
                 Mood::Silent => {}
                 Mood::Test if self.cycle.is_multiple_of((self.rate_hz as u64 / 2).max(1)) => {
-                    self.say(self.cycle_nanos, b"OK\r\n".to_vec());
+                    self.speech.say(self.cycle_nanos, b"OK\r\n".to_vec());
                 }
                 Mood::Test => {}
-                Mood::WrongBaud => self.say(self.cycle_nanos, vec![0x78, 0x00, 0x60, 0x1E, 0x06, 0x18]),
+                Mood::WrongBaud => self.speech.say(self.cycle_nanos, vec![0x78, 0x00, 0x60, 0x1E, 0x06, 0x18]),
                 Mood::Well => self.measure(),
             }
         }
     }
 
     fn measure(&mut self) {
-        let at = self.cycle_nanos;
+        let (at, period) = (self.cycle_nanos, self.period_nanos());
         for unit in &mut self.units {
-            let (position, _) = (self.world)(unit.address, at - self.config.position_latency_nanos);
-            let (_, rotation) = (self.world)(unit.address, at - self.config.rotation_latency_nanos);
+            let filtered = at - (unit.mains_filter_cycles() * period as f64) as i64;
+            let (position, _) = (self.world)(unit.address, filtered - self.config.position_latency_nanos);
+            let (_, rotation) = (self.world)(unit.address, filtered - self.config.rotation_latency_nanos);
             unit.measure(position, rotation, self.config.filters);
         }
         if self.streaming && !self.held && self.configured && self.cycle.is_multiple_of(self.report_every) {
@@ -190,107 +188,32 @@ impl FlockEmulator {
 
     /// The records of one cycle: those of all units in group mode, else the one that was asked.
     fn report(&mut self, address: u8, at_nanos: i64) {
-        let mut bytes = Vec::with_capacity(MOST_BYTES);
-        for unit in &self.units {
+        let flipped = self.config.is_flipped(at_nanos);
+        for unit in self.units.iter().filter(|unit| self.config.has_sensor(unit.address)) {
             let meant = self.group || unit.address == address || (address == 0 && unit.address <= 1);
             if meant {
-                let (record, layout) = unit.record(&self.config, self.group);
-                bytes.push(encode(&record, &layout));
+                let (record, layout) = unit.record(&self.config, self.group, flipped);
+                self.speech.say(at_nanos, encode(&record, &layout));
             }
         }
-        for record in bytes {
-            self.say(at_nanos, record);
-        }
-    }
-
-    fn say(&mut self, from_nanos: i64, bytes: Vec<u8>) {
-        self.line_free_at = self.line_free_at.max(from_nanos) + wire_nanos(bytes.len(), self.config.baud);
-        self.saying.push_back((self.line_free_at, bytes));
     }
 }
 
-#[cfg(feature = "serial")]
-impl serial_line::Emulated for FlockEmulator {
+impl Emulated for FlockEmulator {
     fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        FlockEmulator::hear(self, bytes, now_nanos);
-    }
-    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
-        FlockEmulator::speak(self, now_nanos)
-    }
-}
-
-impl FlockEmulator {
-    fn obey(&mut self, command: Command, now: i64) {
-        let Command { address, code, data } = command;
-        let Some(index) = self.units.iter().position(|unit| unit.address == address || address == 0) else {
-            self.error = 13;
+        if now_nanos < self.busy_until || self.mood != Mood::Well {
             return;
-        };
-        match (code, data.as_slice()) {
-            (b'B', _) => {
-                self.streaming = false;
-                if self.configured {
-                    self.report(address, now);
-                }
-            }
-            (b'@', _) => self.streaming = true,
-            (b'?', _) => self.streaming = false,
-            (b'Q', _) => self.report_every = 1,
-            (b'R', _) => self.report_every = 2,
-            (b'S', _) => self.report_every = 8,
-            (b'T', _) => self.report_every = 32,
-            (0x11, _) => self.held = false,
-            (0x13, _) => self.held = true,
-            (b'O', &[parameter]) => {
-                let answer = self.examine(index, parameter);
-                self.say(now, answer);
-            }
-            (b'P', &[7, low, high]) => {
-                self.rate_hz = (f64::from(u16::from_le_bytes([low, high])) / 256.0).clamp(20.0, 144.0)
-            }
-            (b'P', &[35, on]) => self.group = on != 0,
-            (b'P', &[50, units]) => {
-                self.busy_until = now + CONFIGURING_NANOS;
-                self.configured = usize::from(units) == self.units.len();
-                self.error = if self.configured { 0 } else { 13 };
-            }
-            (code, data) => match self.units[index].set(code, data) {
-                Ok(ends_stream) => self.streaming &= !ends_stream,
-                Err(()) => self.error = 6,
-            },
+        }
+        self.advance(now_nanos);
+        self.heard.extend_from_slice(bytes);
+        while let Some((command, used)) = next_command(&self.heard) {
+            self.heard.drain(..used);
+            self.obey(command, now_nanos);
         }
     }
 
-    fn examine(&mut self, index: usize, parameter: u8) -> Vec<u8> {
-        let unit = &self.units[index];
-        match parameter {
-            0 => {
-                let bits = [
-                    (15, index == 0),
-                    (14, self.configured),
-                    (13, self.error != 0),
-                    (12, self.configured),
-                    (8, true),
-                    (6, self.held),
-                    (5, unit.asleep),
-                    (0, self.streaming),
-                ];
-                let word = bits.iter().fold(0u16, |word, (bit, on)| word | u16::from(*on) << bit);
-                (word | u16::from(unit.format.status_code()) << 1).to_le_bytes().to_vec()
-            }
-            1 => vec![3, 67],
-            2 => vec![25, 0],
-            7 => ((self.rate_hz * 256.0) as u16).to_le_bytes().to_vec(),
-            10 => vec![std::mem::take(&mut self.error)],
-            15 => b"6DFOB     ".to_vec(),
-            16 => vec![std::mem::take(&mut self.error), 2],
-            19 => vec![0],
-            35 => vec![u8::from(self.group)],
-            36 => {
-                let unit = |k: usize| if k < self.units.len() { 0xE0 | u8::from(k == 0) } else { 0 };
-                (0..14).map(unit).collect()
-            }
-            other => unit.examine(other),
-        }
+    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
+        self.advance(now_nanos);
+        self.speech.leave(now_nanos)
     }
 }

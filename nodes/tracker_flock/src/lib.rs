@@ -18,6 +18,7 @@
 //!
 //! ```
 //! use tracker_flock::protocol::{decoder::Decoder, records::{Format, Layout}};
+//! use serial_line::PoseTracker as _;
 //! use tracker_flock::{Config, FlockTracker, Heard};
 //! let config = Config { output: Format::PositionAngles, ..Config::default() };
 //! let mut tracker = FlockTracker::new(config)?;
@@ -45,4 +46,4 @@ pub mod protocol;
 mod tracker;
 
 pub use config::{Config, ConfigError, Hemisphere};
-pub use tracker::{FlockTracker, Heard, SensorPose};
+pub use tracker::{FlockTracker, Heard};

@@ -4,7 +4,7 @@ mod examination;
 
 use crate::config::Config;
 use crate::protocol::address::addressed;
-use crate::protocol::commands::{self, POINT, Step, XON};
+use crate::protocol::commands::{self, POINT, XON};
 use crate::protocol::decoder::Decoder;
 use crate::protocol::reading::{QuaternionSense, Reading, settle_sense};
 use crate::protocol::records::{Format, Layout, Record};
@@ -18,8 +18,6 @@ const RESET_HIGH: Duration = Duration::from_secs(1);
 const START_UP: Duration = Duration::from_secs(2);
 /// Answers come within a cycle or two, at the slowest line within a few more.
 pub(crate) const ANSWER: Duration = Duration::from_millis(300);
-const QUIET: Duration = Duration::from_millis(60);
-const NEVER_QUIET: Duration = Duration::from_millis(700);
 /// So often a still sensor is looked for when the quaternion's sense is not known.
 const SENSE_TRIES: usize = 3;
 
@@ -63,21 +61,13 @@ impl Flock {
     /// Ends the stream and lets it run dry: answers to EXAMINE have no mark of their own.
     fn hush(&self, line: &mut Line) -> Result<(), Trouble> {
         line.write(&[XON, POINT])?;
-        if line.drain(QUIET, NEVER_QUIET)? { Ok(()) } else { Err(Trouble::Device(self.garbage(&[]))) }
-    }
-
-    fn carry_out(line: &mut Line, steps: &[Step]) -> Result<(), Trouble> {
-        for step in steps {
-            line.write(&step.send)?;
-            line.pause(step.wait)?;
-        }
-        Ok(())
+        if line.drain()? { Ok(()) } else { Err(Trouble::Device(self.garbage(&[]))) }
     }
 
     /// All that have a sensor speak in group mode, so all are told the same format.
     fn choose_format(&mut self, line: &mut Line, found: &Found, format: Format) -> Result<(), Trouble> {
         for &address in &found.with_sensor {
-            Self::carry_out(line, &[commands::format(address, format)])?;
+            line.carry_out(&[commands::format(address, format)])?;
         }
         self.layout.format = format;
         Ok(())
@@ -85,7 +75,7 @@ impl Flock {
 
     /// One record of one unit, outside group mode.
     fn point(&self, line: &mut Line, address: u8) -> Result<Option<Record>, Trouble> {
-        line.drain(QUIET, NEVER_QUIET)?;
+        line.drain()?;
         let bytes = line.ask(&addressed(address, &[POINT]), self.layout.bytes(), ANSWER)?;
         let mut decoder = Decoder::new(self.layout);
         Ok(bytes.iter().find_map(|&byte| decoder.push(byte)))
@@ -129,12 +119,12 @@ impl Device for Flock {
         let mut examination = Examination { line, config: &self.config };
         let greeting = examination.greet()?;
         if self.config.is_group() {
-            Self::carry_out(line, &[commands::group_mode(false)])?;
-            Self::carry_out(line, &commands::auto_configuration(self.config.unit_count()))?;
+            line.carry_out(&[commands::group_mode(false)])?;
+            line.carry_out(&commands::auto_configuration(self.config.unit_count()))?;
         }
-        line.drain(QUIET, NEVER_QUIET)?;
+        line.drain()?;
         let found = Examination { line, config: &self.config }.units(greeting)?;
-        Self::carry_out(line, &commands::settings(&self.config))?;
+        line.carry_out(&commands::settings(&self.config))?;
         let mut words = found.words.clone();
         if let Some(complaint) = (Examination { line, config: &self.config }).complaint()? {
             words += &format!(", which did not take all settings: {complaint}");
@@ -146,12 +136,12 @@ impl Device for Flock {
             self.choose_format(line, &found, self.config.output)?;
         }
         if self.config.is_group() {
-            Self::carry_out(line, &[commands::group_mode(true)])?;
+            line.carry_out(&[commands::group_mode(true)])?;
             self.layout.group = true;
         }
-        line.drain(QUIET, NEVER_QUIET)?;
+        line.drain()?;
         self.decoder.expect(self.layout);
-        Self::carry_out(line, &commands::stream(self.config.report_every))?;
+        line.carry_out(&commands::stream(self.config.report_every))?;
         Ok(words)
     }
 
@@ -166,11 +156,7 @@ impl Device for Flock {
     }
 
     fn tally(&self) -> Tally {
-        Tally {
-            records: self.decoder.records(),
-            broken: self.decoder.broken(),
-            skipped_bytes: self.decoder.skipped_bytes(),
-        }
+        self.decoder.tally()
     }
 
     fn most_silence(&self) -> Duration {

@@ -5,7 +5,7 @@ use crate::hemisphere::HalfSpace;
 use crate::protocol::reading::{NoReading, QuaternionSense, Reading};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::Vector3;
-use serial_line::{RateLock, Undelayed, wire_nanos};
+use serial_line::{PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 /// A record as the port heard it.
@@ -19,33 +19,18 @@ pub struct Heard {
     pub sense: QuaternionSense,
 }
 
-/// A pose of one sensor. Its stamp is on the clock of the arrivals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SensorPose {
-    /// Which of the configured sensors, from 0.
-    pub sensor: usize,
-    /// The pose; scan, phase and sequence number are for the node to fill in.
-    pub pose: Pose,
-    /// How much the arrival was moved: jitter, wire and latency, in nanoseconds.
-    pub removed_nanos: i64,
-}
-
 /// Turns records into poses.
 #[derive(Debug, Clone)]
 pub struct FlockTracker {
     config: Config,
+    rounds: Rounds,
     birds: Vec<Bird>,
-    cycle: u64,
-    last_address: Option<u8>,
-    strangers: u64,
 }
 
 #[derive(Debug, Clone)]
 struct Bird {
-    address: u8,
     lock: RateLock,
     half: HalfSpace,
-    last_cycle: u64,
 }
 
 impl FlockTracker {
@@ -53,30 +38,22 @@ impl FlockTracker {
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         config.check()?;
         let period = 1e9 / config.rate_hz * f64::from(config.report_every);
-        let bird = |&address: &u8| Bird {
-            address,
-            lock: RateLock::new(Some(period)),
-            half: HalfSpace::default(),
-            last_cycle: 0,
-        };
-        let birds = config.addresses().iter().map(bird).collect();
-        Ok(Self { birds, config, cycle: 0, last_address: None, strangers: 0 })
+        let addresses = config.addresses();
+        let bird = |_: &u8| Bird { lock: RateLock::new(Some(period)), half: HalfSpace::default() };
+        Ok(Self { birds: addresses.iter().map(bird).collect(), rounds: Rounds::new(&addresses), config })
     }
+}
 
-    /// The pose in a record that came whole at a moment, `missed` others in pieces before it; `None` for the record of a
-    /// unit that was not asked for, which is counted.
-    pub fn process(&mut self, heard: &Heard, arrival_nanos: i64, missed: u32) -> Option<SensorPose> {
+impl PoseTracker for FlockTracker {
+    type Record = Heard;
+    const STRANGER: &'static str = "record of a unit that is not in `sensors`";
+
+    /// A bird alone sends no address: its records have 0, which is its own.
+    fn process(&mut self, heard: &Heard, arrival_nanos: i64, missed: u32) -> Option<SensorPose> {
         let Heard { record, layout, sense } = heard;
-        self.count_cycle(record.address, missed);
-        let address = if layout.group { record.address } else { self.birds.first()?.address };
-        let Some(sensor) = self.birds.iter().position(|bird| bird.address == address) else {
-            self.strangers += 1;
-            return None;
-        };
+        let Turn { sensor, skipped } = self.rounds.place(record.address, missed)?;
         let bird = &mut self.birds[sensor];
-        let skipped = self.cycle.saturating_sub(bird.last_cycle + 1);
-        bird.last_cycle = self.cycle;
-        let undelayed = bird.lock.undelay(arrival_nanos, u32::try_from(skipped).unwrap_or(u32::MAX));
+        let undelayed = bird.lock.undelay(arrival_nanos, skipped);
         let (position_latency, rotation_latency) = self.config.latencies_nanos();
         // The units' records follow one another on the line: this one's own, and those of the lower addresses.
         let wire = wire_nanos(layout.bytes() * (sensor + 1), self.config.baud);
@@ -92,24 +69,8 @@ impl FlockTracker {
         Some(SensorPose { sensor, pose, removed_nanos: arrival_nanos - stamp_nanos })
     }
 
-    /// The jitter that was taken from a sensor's arrivals in the last seconds: root mean square and the most.
-    pub fn jitter_nanos(&self, sensor: usize) -> Option<(f64, f64)> {
+    fn jitter_nanos(&self, sensor: usize) -> Option<(f64, f64)> {
         self.birds.get(sensor).map(|bird| bird.lock.jitter_nanos())
-    }
-
-    /// Records so far of units that were not asked for.
-    pub fn strangers(&self) -> u64 {
-        self.strangers
-    }
-
-    /// In group mode a cycle begins where the addresses begin anew.
-    fn count_cycle(&mut self, address: u8, missed: u32) {
-        let rounds = u64::from(missed) / self.birds.len() as u64;
-        self.cycle += rounds;
-        if self.last_address.is_none_or(|last| address <= last) {
-            self.cycle += 1;
-        }
-        self.last_address = Some(address);
     }
 }
 

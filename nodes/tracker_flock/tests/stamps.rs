@@ -2,17 +2,19 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+#[path = "../../serial_line/tests/harness/play.rs"]
+mod harness;
+
+use harness::{metres, pendulum, play, rms, stamp_errors_ms};
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::{Faults, FaultsConfig};
+use serial_line::{FaultsConfig, SensorPose};
 use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, World};
 use tracker_flock::protocol::commands::{settings, stream};
 use tracker_flock::protocol::decoder::Decoder;
 use tracker_flock::protocol::reading::QuaternionSense;
 use tracker_flock::protocol::records::{Format, Layout};
-use tracker_flock::{Config, FlockTracker, Heard, SensorPose};
+use tracker_flock::{Config, FlockTracker, Heard};
 use wire::Quality;
-
-const TICK_NANOS: i64 = 100_000;
 
 fn config() -> Config {
     Config { rate_hz: 100.0, ac_narrow_filter: false, output: Format::PositionAngles, ..Config::default() }
@@ -27,36 +29,15 @@ fn played(
     world: impl Fn(i64) -> Vector3<f64> + Send + 'static,
 ) -> Vec<SensorPose> {
     let world: World = Box::new(move |_, nanos| (world(nanos), UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3)));
-    let mut bird = FlockEmulator::new(emulator, world);
-    for step in settings(config).iter().chain(&stream(config.report_every)) {
-        bird.hear(&step.send, 0);
-    }
+    let bird = FlockEmulator::new(emulator, world);
     let layout = Layout { metal: config.metal, ..Layout::plain(config.output) };
-    let (mut decoder, mut faults) = (Decoder::new(layout), Faults::new(faults));
-    let mut tracker = FlockTracker::new(config.clone()).unwrap();
-    let mut poses = Vec::new();
-    for tick in 1..seconds * 1_000_000_000 / TICK_NANOS {
-        while let Some((left_nanos, bytes)) = bird.speak(tick * TICK_NANOS) {
-            let delivery = faults.deliver(left_nanos, &bytes);
-            for &byte in &delivery.bytes {
-                if let Some(record) = decoder.push(byte) {
-                    let heard = Heard { record, layout, sense: QuaternionSense::AsMatrix };
-                    poses.extend(tracker.process(&heard, delivery.due_nanos, decoder.take_missed()));
-                }
-            }
-        }
-    }
-    poses
-}
-
-fn metres(pose: &SensorPose) -> Vector3<f64> {
-    Vector3::from(pose.pose.world_from_body.translation_m)
-}
-
-/// Along x at half a metre a second, to and fro: the position tells the time.
-fn pendulum(nanos: i64) -> Vector3<f64> {
-    let t = nanos as f64 * 1e-9 * 0.5;
-    Vector3::new(0.2 + 0.4 * ((t / 0.4).rem_euclid(2.0) - 1.0).abs(), 0.05, -0.1)
+    let mut decoder = Decoder::new(layout);
+    let decode = move |byte| {
+        let record = decoder.push(byte)?;
+        Some((Heard { record, layout, sense: QuaternionSense::AsMatrix }, decoder.take_missed()))
+    };
+    let told = settings(config).into_iter().chain(stream(config.report_every));
+    play(bird, told, faults, seconds, FlockTracker::new(config.clone()).unwrap(), decode)
 }
 
 #[test]
@@ -65,16 +46,21 @@ fn stamps_are_true_to_half_a_millisecond_at_ten_milliseconds_of_jitter() {
         let config = Config { rate_hz, baud, ..config() };
         let faults = FaultsConfig { seed: 7, jitter_nanos: 10_000_000, ..FaultsConfig::default() };
         let poses = played(&config, EmulatorConfig { baud, ..EmulatorConfig::default() }, faults, 20, pendulum);
-        let settled: Vec<f64> = poses[300..]
-            .iter()
-            .filter(|pose| (0.21..0.59).contains(&metres(pose).x))
-            .map(|pose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).x.abs() / 0.5 * 1e3)
-            .collect();
-        let rms = (settled.iter().map(|e| e * e).sum::<f64>() / settled.len() as f64).sqrt();
+        let rms = rms(&stamp_errors_ms(&poses[300..]));
         println!("{rate_hz} Hz, {baud} baud: {rms:.3} ms rms");
         assert!(rms < 0.3, "{rate_hz} Hz, {baud} baud: {rms} ms rms");
         assert!(poses[..20].iter().all(|pose| pose.pose.reason.contains("clock is not settled")));
         assert!(poses[300..].iter().all(|pose| pose.pose.quality == Quality::Good && pose.pose.reason.is_empty()));
+    }
+}
+
+#[test]
+fn what_the_filters_against_the_mains_take_is_taken_off() {
+    for (ac_narrow_filter, ac_wide_filter) in [(true, false), (false, true), (true, true)] {
+        let config = Config { ac_narrow_filter, ac_wide_filter, ..config() };
+        let poses = played(&config, EmulatorConfig::default(), FaultsConfig::default(), 8, pendulum);
+        let rms = rms(&stamp_errors_ms(&poses[300..]));
+        assert!(rms < 0.3, "narrow {ac_narrow_filter}, wide {ac_wide_filter}: {rms} ms rms");
     }
 }
 
@@ -87,8 +73,7 @@ fn lost_bytes_cost_the_records_they_are_in_and_no_stamp() {
     // What garbage made up is no position of this pendulum.
     let real =
         poses[300..].iter().filter(|pose| (metres(pose).y - 0.05).abs() < 1e-3 && (metres(pose).z + 0.1).abs() < 1e-3);
-    let errors: Vec<f64> =
-        real.map(|pose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).x.abs() / 0.5 * 1e3).collect();
+    let errors = stamp_errors_ms(real);
     let wrong = errors.iter().filter(|ms| **ms > 2.0).count();
     assert!(wrong * 100 < errors.len(), "{wrong} of {} stamps are off by more than 2 ms", errors.len());
 }
@@ -107,6 +92,18 @@ fn a_sensor_is_followed_into_the_other_half_of_space() {
     let as_told = Config { follow_hemisphere: false, ..config() };
     let poses = played(&as_told, EmulatorConfig::default(), faults, 10, through);
     assert!(poses.iter().all(|pose| metres(pose).x > -1e-3), "as the bird has it");
+}
+
+#[test]
+fn a_bird_that_changes_its_mind_about_the_half_of_space_is_not_believed() {
+    let emulator = EmulatorConfig { flip_every_nanos: 700_000_000, ..EmulatorConfig::default() };
+    let off = |pose: &SensorPose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).norm();
+    let poses = played(&config(), emulator.clone(), FaultsConfig::default(), 10, pendulum);
+    assert!(poses.iter().all(|pose| off(pose) < 2e-3), "what jumps through the transmitter is mirrored back");
+    let as_told = Config { follow_hemisphere: false, ..config() };
+    let poses = played(&as_told, emulator, FaultsConfig::default(), 10, pendulum);
+    let flipped = poses.iter().filter(|pose| off(pose) > 0.1).count();
+    assert!((400..600).contains(&flipped), "half the time it says the mirror image: {flipped} of {}", poses.len());
 }
 
 #[test]

@@ -23,6 +23,8 @@ pub struct Config {
     /// Records a second from each station: 120 shared among the stations of a Fastrak, 60 Patriot, 240 or 120 Liberty
     /// (240 for one station: two would not go through 115200 baud).
     pub rate_hz: Option<f64>,
+    /// Beside a simulated camera: stamps count from the beginning of the scan, as that camera's do.
+    pub scan_clock: bool,
     /// How old a pose is when its record leaves: 4 ms Fastrak, 3.5 Liberty, 18.5 Patriot (data sheets).
     pub latency_ms: Option<f64>,
     /// One standard deviation of a position near the source, along each axis: 0.76 mm, Patriot 1.5 (data sheets).
@@ -47,6 +49,7 @@ impl Default for Config {
             hemisphere: [1.0, 0.0, 0.0],
             filter: false,
             rate_hz: None,
+            scan_clock: false,
             latency_ms: None,
             position_sigma_mm: None,
             rotation_sigma_deg: None,

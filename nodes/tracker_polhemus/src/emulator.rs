@@ -1,10 +1,9 @@
 //! A Fastrak, Liberty or Patriot that is played, byte for byte: commands in, records and answers out, each with its time.
-//! No port and no clock of its own; with the feature `serial` it sits behind a pseudo-terminal (`serial_line::Pty`).
+//! No port and no clock of its own; `serial_line::Pty` puts it behind a pseudo-terminal.
 
 use crate::protocol::records::{Family, Item, Layout, Record, encode};
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::wire_nanos;
-use std::collections::VecDeque;
+use serial_line::{Emulated, Speech};
 
 const INCH_M: f64 = 0.0254;
 const CENTIMETRE_M: f64 = 0.01;
@@ -75,8 +74,7 @@ pub struct PolhemusEmulator {
     frame: u32,
     frame_nanos: i64,
     clock_zero_nanos: i64,
-    saying: VecDeque<(i64, Vec<u8>)>,
-    line_free_at: i64,
+    speech: Speech,
 }
 
 impl PolhemusEmulator {
@@ -87,6 +85,7 @@ impl PolhemusEmulator {
         Self {
             layouts: vec![layout; stations],
             active: vec![true; stations],
+            speech: Speech::new(config.baud),
             config,
             world,
             mood: Mood::Well,
@@ -97,33 +96,12 @@ impl PolhemusEmulator {
             frame: 0,
             frame_nanos: i64::MIN,
             clock_zero_nanos: 0,
-            saying: VecDeque::new(),
-            line_free_at: i64::MIN,
         }
     }
 
     /// Makes it ill, or well again.
     pub fn set_mood(&mut self, mood: Mood) {
         self.mood = mood;
-    }
-
-    /// The next bytes that have left by now, and when the last of them did.
-    pub fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
-        self.advance(now_nanos);
-        if self.saying.front().is_some_and(|(left, _)| *left <= now_nanos) { self.saying.pop_front() } else { None }
-    }
-
-    /// The host has sent bytes.
-    pub fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        if self.mood != Mood::Well {
-            return;
-        }
-        self.advance(now_nanos);
-        self.heard.extend_from_slice(bytes);
-        while let Some((command, used)) = next_command(&self.heard, self.config.family) {
-            self.heard.drain(..used);
-            self.obey(&command, now_nanos);
-        }
     }
 
     fn obey(&mut self, command: &str, now: i64) {
@@ -147,11 +125,11 @@ impl PolhemusEmulator {
             'S' if fastrak => {
                 let flags = u8::from(self.binary) | u8::from(self.centimetres) << 1 | u8::from(self.continuous) << 3;
                 let name = format!("2 S{flags:03X}000      3.01  {:<32}\r\n", "3SPACE FASTRAK, emulated");
-                self.say(now, name.into_bytes());
+                self.speech.say(now, name.into_bytes());
             }
             '\x16' => {
                 let name = if self.config.family == Family::Patriot { "Patriot" } else { "Liberty" };
-                self.say(now, format!("{:<194}\r\n", format!("0 Polhemus {name}, emulated")).into_bytes());
+                self.speech.say(now, format!("{:<194}\r\n", format!("0 Polhemus {name}, emulated")).into_bytes());
             }
             'l' if fastrak => {
                 let (station, on) = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
@@ -181,9 +159,9 @@ impl PolhemusEmulator {
             self.frame = self.frame.wrapping_add(1);
             match self.mood {
                 Mood::Silent => {}
-                Mood::WrongBaud => self.say(self.frame_nanos, vec![0xE6, 0x18, 0x00, 0x7E, 0x98, 0xFE]),
+                Mood::WrongBaud => self.speech.say(self.frame_nanos, vec![0xE6, 0x18, 0x00, 0x7E, 0x98, 0xFE]),
                 // A line that cannot take what is measured loses frames.
-                Mood::Well if self.continuous && self.line_free_at <= self.frame_nanos + period => {
+                Mood::Well if self.continuous && self.speech.free_at_nanos() <= self.frame_nanos + period => {
                     self.report(self.frame_nanos)
                 }
                 Mood::Well => {}
@@ -214,13 +192,27 @@ impl PolhemusEmulator {
                 pressed: false,
             };
             let bytes = if self.binary { encode(&record, &self.layouts[index]) } else { text(&record) };
-            self.say(at_nanos, bytes);
+            self.speech.say(at_nanos, bytes);
+        }
+    }
+}
+
+impl Emulated for PolhemusEmulator {
+    fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
+        if self.mood != Mood::Well {
+            return;
+        }
+        self.advance(now_nanos);
+        self.heard.extend_from_slice(bytes);
+        while let Some((command, used)) = next_command(&self.heard, self.config.family) {
+            self.heard.drain(..used);
+            self.obey(&command, now_nanos);
         }
     }
 
-    fn say(&mut self, from_nanos: i64, bytes: Vec<u8>) {
-        self.line_free_at = self.line_free_at.max(from_nanos) + wire_nanos(bytes.len(), self.config.baud);
-        self.saying.push_back((self.line_free_at, bytes));
+    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
+        self.advance(now_nanos);
+        self.speech.leave(now_nanos)
     }
 }
 
@@ -262,14 +254,4 @@ fn text(record: &Record) -> Vec<u8> {
     let [a, e, r] = record.euler_deg;
     format!("0{}{} {x:7.2}{y:7.2}{z:7.2}{a:7.2}{e:7.2}{r:7.2}\r\n", record.station, char::from(record.error))
         .into_bytes()
-}
-
-#[cfg(feature = "serial")]
-impl serial_line::Emulated for PolhemusEmulator {
-    fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        PolhemusEmulator::hear(self, bytes, now_nanos);
-    }
-    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
-        PolhemusEmulator::speak(self, now_nanos)
-    }
 }

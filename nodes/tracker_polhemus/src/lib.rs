@@ -16,6 +16,7 @@
 //!
 //! ```
 //! use tracker_polhemus::protocol::{decoder::Decoder, records::{Family, Layout, Record, encode}};
+//! use serial_line::PoseTracker as _;
 //! use tracker_polhemus::{Config, PolhemusTracker};
 //! let layout = Layout::of(Family::Liberty);
 //! let record = Record { position_inches: [12.0, -6.0, 3.0], time_stamp_ms: 40, ..Record::default() };
@@ -38,4 +39,4 @@ pub mod protocol;
 mod tracker;
 
 pub use config::{Config, ConfigError, DataSheet};
-pub use tracker::{PolhemusTracker, StationPose};
+pub use tracker::PolhemusTracker;

@@ -1,7 +1,7 @@
 //! The tracker at the other end of a line: set up from any state, and listened to.
 
 use crate::config::Config;
-use crate::protocol::commands::{self, Step};
+use crate::protocol::commands;
 use crate::protocol::decoder::Decoder;
 use crate::protocol::records::{Family, Layout, Record};
 use crate::protocol::status::{FastrakStatus, printable};
@@ -9,8 +9,6 @@ use serial_line::{Device, Heard, Line, LineSettings, Tally, Trouble};
 use std::time::Duration;
 
 const ANSWER: Duration = Duration::from_millis(400);
-const QUIET: Duration = Duration::from_millis(60);
-const NEVER_QUIET: Duration = Duration::from_millis(700);
 /// A text of fewer letters is noise.
 const LEAST_NAME: usize = 8;
 
@@ -29,14 +27,6 @@ impl Polhemus {
     /// How its port is opened: both modem lines raised, as a host that is ready does.
     pub fn line_settings(&self) -> LineSettings {
         LineSettings { path: self.config.port.clone(), baud: self.config.baud, rts: true, dtr: true }
-    }
-
-    fn carry_out(line: &mut Line, steps: &[Step]) -> Result<(), Trouble> {
-        for step in steps {
-            line.write(&step.send)?;
-            line.pause(step.wait)?;
-        }
-        Ok(())
     }
 
     /// Who is there, in words.
@@ -67,15 +57,15 @@ impl Device for Polhemus {
     type Record = Record;
 
     fn set_up(&mut self, line: &mut Line) -> Result<String, Trouble> {
-        Self::carry_out(line, &commands::hush(self.config.family))?;
-        if !line.drain(QUIET, NEVER_QUIET)? {
+        line.carry_out(&commands::hush(self.config.family))?;
+        if !line.drain()? {
             return Err(Trouble::Device(self.garbage(&[])));
         }
         let name = self.greet(line)?;
-        Self::carry_out(line, &commands::settings(&self.config))?;
-        line.drain(QUIET, NEVER_QUIET)?;
+        line.carry_out(&commands::settings(&self.config))?;
+        line.drain()?;
         self.decoder.start_anew();
-        Self::carry_out(line, &commands::stream(self.config.family))?;
+        line.carry_out(&commands::stream(self.config.family))?;
         Ok(name)
     }
 
@@ -88,11 +78,7 @@ impl Device for Polhemus {
     }
 
     fn tally(&self) -> Tally {
-        Tally {
-            records: self.decoder.records(),
-            broken: self.decoder.broken(),
-            skipped_bytes: self.decoder.skipped_bytes(),
-        }
+        self.decoder.tally()
     }
 
     fn most_silence(&self) -> Duration {

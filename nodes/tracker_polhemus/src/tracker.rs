@@ -3,23 +3,12 @@
 use crate::config::{Config, ConfigError, DataSheet};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use serial_line::{DeviceClock, RateLock, Undelayed, wire_nanos};
+use serial_line::{DeviceClock, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 const INCH_M: f64 = 0.0254;
 /// The device's clock ticks in milliseconds.
 const TICK_NANOS: f64 = 1e6;
-
-/// A pose of one station. Its stamp is on the clock of the arrivals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StationPose {
-    /// Which of the configured stations, from 0.
-    pub sensor: usize,
-    /// The pose; scan, phase and sequence number are for the node to fill in.
-    pub pose: Pose,
-    /// How much the arrival was moved: jitter, wire and latency, in nanoseconds.
-    pub removed_nanos: i64,
-}
 
 /// Turns records into poses.
 #[derive(Debug, Clone)]
@@ -27,17 +16,8 @@ pub struct PolhemusTracker {
     config: Config,
     sheet: DataSheet,
     record_bytes: usize,
-    stations: Vec<Station>,
-    round: u64,
-    last_station: Option<u8>,
-    strangers: u64,
-}
-
-#[derive(Debug, Clone)]
-struct Station {
-    number: u8,
-    clock: StationClock,
-    last_round: u64,
+    rounds: Rounds,
+    clocks: Vec<StationClock>,
 }
 
 #[derive(Debug, Clone)]
@@ -53,29 +33,24 @@ impl PolhemusTracker {
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         config.check()?;
         let sheet = config.sheet();
-        let clock = || match config.family.has_clock() {
+        let clock = |_: &u8| match config.family.has_clock() {
             true => StationClock::Device(DeviceClock::new(TICK_NANOS, Some(1e9 / sheet.rate_hz))),
             false => StationClock::Rate(RateLock::new(Some(1e9 / sheet.rate_hz))),
         };
-        let station = |&number: &u8| Station { number, clock: clock(), last_round: 0 };
-        let stations = config.stations.iter().map(station).collect();
-        let record_bytes = Layout::of(config.family).bytes();
-        Ok(Self { stations, record_bytes, sheet, config, round: 0, last_station: None, strangers: 0 })
+        let clocks = config.stations.iter().map(clock).collect();
+        let (rounds, record_bytes) = (Rounds::new(&config.stations), Layout::of(config.family).bytes());
+        Ok(Self { rounds, clocks, record_bytes, sheet, config })
     }
+}
 
-    /// The pose in a record that came whole at a moment, `missed` others in pieces before it; `None` for the record of a
-    /// station that was not asked for, which is counted.
-    pub fn process(&mut self, record: &Record, arrival_nanos: i64, missed: u32) -> Option<StationPose> {
-        self.count_round(record.station, missed);
-        let Some(sensor) = self.stations.iter().position(|station| station.number == record.station) else {
-            self.strangers += 1;
-            return None;
-        };
-        let station = &mut self.stations[sensor];
-        let skipped = self.round.saturating_sub(station.last_round + 1);
-        station.last_round = self.round;
-        let undelayed = match &mut station.clock {
-            StationClock::Rate(lock) => Some(lock.undelay(arrival_nanos, u32::try_from(skipped).unwrap_or(u32::MAX))),
+impl PoseTracker for PolhemusTracker {
+    type Record = Record;
+    const STRANGER: &'static str = "record of a station that is not in `stations`";
+
+    fn process(&mut self, record: &Record, arrival_nanos: i64, missed: u32) -> Option<SensorPose> {
+        let Turn { sensor, skipped } = self.rounds.place(record.station, missed)?;
+        let undelayed = match &mut self.clocks[sensor] {
+            StationClock::Rate(lock) => Some(lock.undelay(arrival_nanos, skipped)),
             StationClock::Device(clock) => clock.undelay(record.time_stamp_ms, arrival_nanos),
         };
         // The stations' records follow one another on the line.
@@ -85,31 +60,18 @@ impl PolhemusTracker {
         let mut pose = measured(record);
         pose.header = Header { stamp_nanos, clock: Clock::System, ..Header::default() };
         self.judge(&mut pose, record, undelayed);
-        Some(StationPose { sensor, pose, removed_nanos: arrival_nanos - stamp_nanos })
+        Some(SensorPose { sensor, pose, removed_nanos: arrival_nanos - stamp_nanos })
     }
 
-    /// The jitter that was taken from a station's arrivals in the last seconds: root mean square and the most.
-    pub fn jitter_nanos(&self, sensor: usize) -> Option<(f64, f64)> {
-        self.stations.get(sensor).map(|station| match &station.clock {
+    fn jitter_nanos(&self, sensor: usize) -> Option<(f64, f64)> {
+        self.clocks.get(sensor).map(|clock| match clock {
             StationClock::Rate(lock) => lock.jitter_nanos(),
             StationClock::Device(clock) => clock.jitter_nanos(),
         })
     }
+}
 
-    /// Records so far of stations that were not asked for.
-    pub fn strangers(&self) -> u64 {
-        self.strangers
-    }
-
-    /// A round begins where the stations begin anew.
-    fn count_round(&mut self, station: u8, missed: u32) {
-        self.round += u64::from(missed) / self.stations.len() as u64;
-        if self.last_station.is_none_or(|last| station <= last) {
-            self.round += 1;
-        }
-        self.last_station = Some(station);
-    }
-
+impl PolhemusTracker {
     /// Sigma by distance and distortion, and why a pose is not as good as it could be.
     fn judge(&self, pose: &mut Pose, record: &Record, undelayed: Option<Undelayed>) {
         let mut reasons = Vec::new();

@@ -3,15 +3,18 @@
 #![cfg(feature = "serial")]
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+#[path = "../../serial_line/tests/harness/listener.rs"]
+mod harness;
+
+use harness::Listener;
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::{FaultsConfig, HostClock, News, Pty, Session};
+use serial_line::{FaultsConfig, HostClock, Pty};
 use std::path::Path;
-use std::sync::mpsc::{Receiver, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tracker_polhemus::emulator::{EmulatorConfig, Mood, PolhemusEmulator, World};
 use tracker_polhemus::port::Polhemus;
-use tracker_polhemus::protocol::records::{Family, Record};
-use tracker_polhemus::{Config, PolhemusTracker, StationPose};
+use tracker_polhemus::protocol::records::Family;
+use tracker_polhemus::{Config, PolhemusTracker};
 
 /// Each station on a circle of its own, at 0.4 m/s.
 fn circle(station: u8, nanos: i64) -> (Vector3<f64>, UnitQuaternion<f64>) {
@@ -20,46 +23,11 @@ fn circle(station: u8, nanos: i64) -> (Vector3<f64>, UnitQuaternion<f64>) {
     (position, UnitQuaternion::from_euler_angles(0.5, 0.3 * t.sin(), 0.2))
 }
 
-struct Rig {
-    session: Session<Record>,
-    tracker: PolhemusTracker,
-    news: Receiver<News>,
-}
-
-impl Rig {
-    fn start(config: Config, clock: HostClock) -> Self {
-        let device = Polhemus::new(config.clone());
-        let (say, news) = channel();
-        let settings = device.line_settings();
-        let session = Session::start(device, settings, clock, move |n| drop(say.send(n)));
-        Self { session, tracker: PolhemusTracker::new(config).unwrap(), news }
-    }
-
-    fn poses(&mut self, count: usize) -> Vec<StationPose> {
-        let (mut poses, started) = (Vec::new(), Instant::now());
-        while poses.len() < count && started.elapsed() < Duration::from_secs(20) {
-            let Some(arrived) = self.session.next(Duration::from_millis(50)) else { continue };
-            poses.extend(self.tracker.process(&arrived.record, arrived.nanos, arrived.missed));
-        }
-        assert_eq!(poses.len(), count, "{:?}", self.news.try_iter().collect::<Vec<_>>());
-        poses
-    }
-
-    fn trouble(&self) -> String {
-        loop {
-            if let News::Trouble(trouble) = self.news.recv_timeout(Duration::from_secs(10)).unwrap() {
-                return trouble.to_string();
-            }
-        }
-    }
-
-    fn streaming(&self) -> String {
-        loop {
-            if let News::Streaming(words) = self.news.recv_timeout(Duration::from_secs(10)).unwrap() {
-                return words;
-            }
-        }
-    }
+/// The driver as configured.
+fn listen(config: Config, clock: HostClock) -> Listener<PolhemusTracker> {
+    let device = Polhemus::new(config.clone());
+    let line = device.line_settings();
+    Listener::start(device, line, PolhemusTracker::new(config).unwrap(), clock)
 }
 
 fn plugged(
@@ -82,7 +50,7 @@ fn each_family_is_set_up_and_heard() {
         let rate_hz = config.sheet().rate_hz;
         let emulator = EmulatorConfig { stations: 2, rate_hz, ..EmulatorConfig::of(family) };
         let pty = plugged(emulator, faults, None, clock);
-        let mut rig = Rig::start(Config { port: pty.path().to_owned(), ..config }, clock);
+        let mut rig = listen(Config { port: pty.path().to_owned(), ..config }, clock);
         assert!(rig.streaming().contains(name));
         rig.poses(150);
         for pose in rig.poses(60) {
@@ -101,15 +69,13 @@ fn each_family_is_set_up_and_heard() {
 fn each_illness_is_its_own_sentence_and_is_survived() {
     let clock = HostClock::start();
     let pty = plugged(EmulatorConfig::of(Family::Liberty), FaultsConfig::default(), None, clock);
-    let mut rig = Rig::start(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
+    let mut rig = listen(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
     rig.poses(20);
     for (mood, words) in [(Mood::Silent, "says nothing"), (Mood::WrongBaud, "no record of a Liberty")] {
         pty.device().set_mood(mood);
         assert!(rig.trouble().contains(words));
         pty.device().set_mood(Mood::Well);
-        while !matches!(rig.news.try_recv(), Ok(News::Streaming(_))) {
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        rig.streaming();
         while rig.session.next(Duration::ZERO).is_some() {}
         rig.poses(20);
     }
@@ -122,7 +88,7 @@ fn a_port_that_is_pulled_and_plugged_in_again_goes_on() {
     let link = folder.path().join("tracker");
     let family = Family::Fastrak;
     let pty = plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
-    let mut rig = Rig::start(Config { port: link.clone(), family, ..Config::default() }, clock);
+    let mut rig = listen(Config { port: link.clone(), family, ..Config::default() }, clock);
     rig.poses(50);
     drop(pty);
     assert!(rig.trouble().contains("went away"));
@@ -136,6 +102,6 @@ fn another_device_than_was_configured_is_named() {
     let clock = HostClock::start();
     let pty = plugged(EmulatorConfig::of(Family::Patriot), FaultsConfig::default(), None, clock);
     let config = Config { port: pty.path().to_owned(), family: Family::Fastrak, ..Config::default() };
-    let told = Rig::start(config, clock).trouble();
+    let told = listen(config, clock).trouble();
     assert!(told.contains("says nothing") || told.contains("no record of a Fastrak"), "{told}");
 }

@@ -95,6 +95,13 @@ impl Unit {
         }
     }
 
+    /// How much older the filters against the mains make a measurement: even means of two and of six have their middle so
+    /// many cycles back.
+    pub fn mains_filter_cycles(&self) -> f64 {
+        let is_on = |bit: u16| self.filters_off & bit == 0;
+        (if is_on(0b100) { 0.5 } else { 0.0 }) + if is_on(0b010) { 2.5 } else { 0.0 }
+    }
+
     /// One cycle: the adaptive DC filter follows with a gain that grows from ALPHA_MIN to ALPHA_MAX with the motion.
     pub fn measure(&mut self, position: Vector3<f64>, rotation: UnitQuaternion<f64>, filters: bool) {
         if self.asleep {
@@ -115,7 +122,8 @@ impl Unit {
         self.measured = Some(filtered);
     }
 
-    pub fn record(&self, config: &EmulatorConfig, group: bool) -> (Record, Layout) {
+    /// What it sends; `flipped` as if it were in the other half of space.
+    pub fn record(&self, config: &EmulatorConfig, group: bool, flipped: bool) -> (Record, Layout) {
         let layout = Layout { format: self.format, button: self.button, metal: self.metal, group };
         let Some((position, rotation)) = self.measured else {
             return (
@@ -124,7 +132,7 @@ impl Unit {
             );
         };
         let half = HALVES.into_iter().find(|half| half.code() == self.hemisphere).unwrap_or_default();
-        let position = reported(half, position);
+        let position = reported(half, position) * if flipped { -1.0 } else { 1.0 };
         let record = words_of(self.format, self.scale, config.quaternion, &position, &rotation);
         (Record { metal: config.metal, address: self.address, ..record }, layout)
     }

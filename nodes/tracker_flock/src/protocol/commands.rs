@@ -3,6 +3,7 @@
 use super::address::addressed;
 use super::records::Format;
 use crate::config::{Config, Hemisphere};
+use serial_line::Step;
 use std::time::Duration;
 
 /// One record now; ends the stream. All units answer in group mode.
@@ -29,21 +30,8 @@ pub const CONFIGURATION_WAIT: Duration = Duration::from_millis(600);
 /// Between two settings: a unit looks at its line once in a cycle.
 const SETTING_WAIT: Duration = Duration::from_millis(30);
 
-/// Bytes to send, and how long to wait behind them.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
-    /// What it does.
-    pub about: &'static str,
-    /// The bytes; none for a mere wait.
-    pub send: Vec<u8>,
-    /// The wait.
-    pub wait: Duration,
-}
-
-impl Step {
-    fn setting(about: &'static str, address: u8, command: &[u8]) -> Self {
-        Self { about, send: addressed(address, command), wait: SETTING_WAIT }
-    }
+fn setting(about: &'static str, address: u8, command: &[u8]) -> Step {
+    Step { about, send: addressed(address, command), wait: SETTING_WAIT }
 }
 
 /// Brings a flock of so many units to life: they do not measure before.
@@ -57,22 +45,22 @@ pub fn auto_configuration(units: u8) -> [Step; 2] {
 
 /// Makes all units answer together, lowest address first, each record with its address.
 pub fn group_mode(on: bool) -> Step {
-    Step::setting("group mode", 0, &[CHANGE, 35, u8::from(on)])
+    setting("group mode", 0, &[CHANGE, 35, u8::from(on)])
 }
 
 /// Chooses what a unit's records hold; ends the stream.
 pub fn format(address: u8, format: Format) -> Step {
-    Step::setting("record format", address, &[format.command()])
+    setting("record format", address, &[format.command()])
 }
 
 /// All settings, unit for unit. The master's own have no prefix when it is alone.
 pub fn settings(config: &Config) -> Vec<Step> {
     let mut steps = vec![
-        Step::setting("run", 0, &[RUN]),
-        Step::setting("measurement rate", 0, &change(7, &[(config.rate_hz * 256.0).round() as u16])),
+        setting("run", 0, &[RUN]),
+        setting("measurement rate", 0, &change(7, &[(config.rate_hz * 256.0).round() as u16])),
     ];
     for &address in &config.addresses() {
-        let mut set = |about, command: &[u8]| steps.push(Step::setting(about, address, command));
+        let mut set = |about, command: &[u8]| steps.push(setting(about, address, command));
         set("line frequency", &[CHANGE, 20, config.line_frequency_hz]);
         if let Some(code) = config.scale_code() {
             set("scale", &change(3, &[code]));
@@ -97,7 +85,7 @@ pub fn stream(report_every: u8) -> [Step; 2] {
         _ => b'Q',
     };
     let begin = Step { about: "stream", send: vec![STREAM], wait: Duration::ZERO };
-    [Step::setting("report rate", 0, &[rate]), begin]
+    [setting("report rate", 0, &[rate]), begin]
 }
 
 /// CHANGE with words.

@@ -2,21 +2,11 @@
 
 use super::records::{Family, Layout};
 use crate::config::Config;
+use serial_line::Step;
 use std::time::Duration;
 
 /// Between two commands: the device works on one after the other.
 const COMMAND_WAIT: Duration = Duration::from_millis(50);
-
-/// Bytes to send, and how long to wait behind them.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
-    /// What it does.
-    pub about: &'static str,
-    /// The bytes.
-    pub send: Vec<u8>,
-    /// The wait.
-    pub wait: Duration,
-}
 
 fn step(about: &'static str, command: impl Into<Vec<u8>>) -> Step {
     Step { about, send: command.into(), wait: COMMAND_WAIT }

@@ -1,6 +1,7 @@
 //! Records out of a stream of bytes, however broken.
 
 use super::records::{Layout, MOST_BYTES, Record, begins, decode};
+use serial_line::Tally;
 
 /// Collects bytes into records. Where a record does not end as it should, the search goes on at its second byte; so no
 /// whole record is lost to a broken one before it.
@@ -12,32 +13,19 @@ pub struct Decoder {
     have: usize,
     /// Bytes skipped since the last whole record.
     gap: usize,
-    missed: u32,
-    records: u64,
-    broken: u64,
-    skipped_bytes: u64,
+    tally: Tally,
 }
 
 impl Decoder {
     /// For records of this layout.
     pub fn new(layout: Layout) -> Self {
         let length = layout.bytes().min(MOST_BYTES);
-        Self {
-            layout,
-            length,
-            buffer: [0; MOST_BYTES],
-            have: 0,
-            gap: 0,
-            missed: 0,
-            records: 0,
-            broken: 0,
-            skipped_bytes: 0,
-        }
+        Self { layout, length, buffer: [0; MOST_BYTES], have: 0, gap: 0, tally: Tally::default() }
     }
 
     /// Forgets a record that has begun: what follows has nothing to do with it. The counts go on.
     pub fn start_anew(&mut self) {
-        self.skipped_bytes += self.have as u64;
+        self.tally.skipped_bytes += self.have as u64;
         (self.have, self.gap) = (0, 0);
     }
 
@@ -58,10 +46,9 @@ impl Decoder {
         };
         // Pieces of at least half a record were one.
         let pieces = (self.gap + self.length / 2) / self.length;
-        self.missed = self.missed.saturating_add(pieces as u32);
-        self.broken += pieces as u64;
+        self.tally.lose(u32::try_from(pieces).unwrap_or(u32::MAX));
         (self.have, self.gap) = (0, 0);
-        self.records += 1;
+        self.tally.records += 1;
         Some(record)
     }
 
@@ -72,29 +59,19 @@ impl Decoder {
         let start = (1..self.have).find(fits).unwrap_or(self.have);
         self.buffer.copy_within(start..self.have, 0);
         self.have -= start;
-        self.skipped_bytes += start as u64;
-        if self.records > 0 {
+        self.tally.skipped_bytes += start as u64;
+        if self.tally.records > 0 {
             self.gap += start;
         }
     }
 
     /// How many records have come in pieces since this was asked last.
     pub fn take_missed(&mut self) -> u32 {
-        std::mem::take(&mut self.missed)
+        self.tally.take_missed()
     }
 
-    /// Whole records so far.
-    pub fn records(&self) -> u64 {
-        self.records
-    }
-
-    /// Records so far that came in pieces.
-    pub fn broken(&self) -> u64 {
-        self.broken
-    }
-
-    /// Bytes so far that belong to no whole record.
-    pub fn skipped_bytes(&self) -> u64 {
-        self.skipped_bytes
+    /// What it has seen so far.
+    pub fn tally(&self) -> Tally {
+        self.tally
     }
 }
