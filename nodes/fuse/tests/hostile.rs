@@ -4,7 +4,7 @@ mod handset;
 
 use fuse::{Config, Fuse};
 use geometry::rigid_from_wire;
-use handset::triangle;
+use handset::{MS, triangle};
 use proptest::prelude::*;
 use wire::{Clock, Header, Phase, Pose, Quality, RigidPose};
 
@@ -87,6 +87,32 @@ fn run(config: Config, said: &[(usize, Pose)]) -> Result<(), TestCaseError> {
     check(&fused)
 }
 
+/// All that came of what was said, in this order: each receiver's readings keep theirs.
+fn in_order(said: &[Vec<Pose>], order: impl Iterator<Item = usize>) -> (Vec<Pose>, Vec<wire::Refusal>) {
+    let mut fuse = handset::fuse(triangle());
+    let mut left: Vec<_> = said.iter().map(|poses| poses.iter()).collect();
+    for receiver in order.chain((0..3).flat_map(|receiver| std::iter::repeat_n(receiver, said[receiver].len()))) {
+        left[receiver].next().into_iter().for_each(|pose| fuse.pose(receiver, pose));
+    }
+    (0..3).for_each(|receiver| fuse.pose(receiver, &handset::end(i64::MAX)));
+    (fuse.drain().collect(), fuse.take_refused())
+}
+
+/// Readings of one receiver some milliseconds apart, some of them lost, some rotations old.
+fn stream() -> impl Strategy<Value = Vec<Pose>> {
+    let quality = prop_oneof![6 => Just(Quality::Good), 1 => Just(Quality::Degraded), 1 => Just(Quality::Lost)];
+    let reading = (1..30i64, quality, 0..25i64);
+    prop::collection::vec(reading, 0..60).prop_map(|readings| {
+        let mut stamp = 0;
+        let mut read = |(step, quality, lag)| {
+            stamp += step * MS;
+            let pose = handset::reading(stamp, &handset::world_from_body(stamp));
+            Pose { quality, rotation_lag_nanos: lag * MS, reason: "why not".to_owned(), ..pose }
+        };
+        readings.into_iter().map(&mut read).collect()
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
@@ -99,5 +125,13 @@ proptest! {
     fn in_the_order_of_time_too(mut said in prop::collection::vec((0..3usize, pose()), 0..120)) {
         said.sort_by_key(|(_, pose)| pose.header.stamp_nanos);
         run(triangle(), &said)?;
+    }
+
+    #[test]
+    fn the_stamps_decide_and_not_the_order_of_the_messages(
+        said in [stream(), stream(), stream()],
+        order in prop::collection::vec(0..3usize, 0..180),
+    ) {
+        prop_assert_eq!(in_order(&said, std::iter::empty()), in_order(&said, order.into_iter()));
     }
 }
