@@ -11,8 +11,10 @@ const SETTLED_COUNT: usize = 32;
 const RATE_TOLERANCE: f64 = 0.05;
 /// After a longer silence nobody knows how many cycles have passed.
 const SILENCE_PERIODS: f64 = 50.0;
-/// So many records in a row that are late by most of a period: one was lost unseen.
+/// So many records in a row, and for so long, that are late by most of a period: one was lost unseen. The time tells that
+/// from a host that stood still, and then read what had come meanwhile all at once.
 const LATE_STREAK: u32 = 16;
+const LATE_NANOS: f64 = 2.5e8;
 const LATE_PERIODS: f64 = 0.6;
 /// A settled lock is better than this; who is earlier was counted wrongly.
 const EARLY_PERIODS: f64 = 0.15;
@@ -22,6 +24,14 @@ const EARLY_PERIODS: f64 = 0.15;
 struct Suspect {
     from: i64,
     count: i64,
+}
+
+/// Records in a row that are late.
+#[derive(Debug, Clone, Copy)]
+struct Late {
+    since: f64,
+    records: u32,
+    least_periods: f64,
 }
 
 /// A device that measures at an even rate: record k was measured at t0 + k T, and arrives late, never early. The lock
@@ -49,8 +59,7 @@ pub struct RateLock {
     index: i64,
     last_arrival: Option<i64>,
     last_nanos: i64,
-    late_streak: u32,
-    least_late: f64,
+    late: Option<Late>,
     suspect: Option<Suspect>,
     jitter: (f64, f64),
 }
@@ -66,8 +75,7 @@ impl RateLock {
             index: 0,
             last_arrival: None,
             last_nanos: i64::MIN,
-            late_streak: 0,
-            least_late: f64::INFINITY,
+            late: None,
             suspect: None,
             jitter: (0.0, 0.0),
         }
@@ -104,8 +112,7 @@ impl RateLock {
     fn start_anew(&mut self) {
         self.envelope.clear();
         self.index = 0;
-        self.late_streak = 0;
-        self.least_late = f64::INFINITY;
+        self.late = None;
         self.suspect = None;
     }
 
@@ -122,17 +129,17 @@ impl RateLock {
         if late < -EARLY_PERIODS {
             self.take_back(late);
         } else if late > LATE_PERIODS {
-            self.late_streak += 1;
-            self.least_late = self.least_late.min(late);
-            if self.late_streak < LATE_STREAK {
+            let before = self.late.unwrap_or(Late { since: arrival, records: 0, least_periods: f64::INFINITY });
+            let streak = Late { records: before.records + 1, least_periods: before.least_periods.min(late), ..before };
+            if streak.records < LATE_STREAK || arrival - streak.since < LATE_NANOS {
+                self.late = Some(streak);
                 return;
             }
-            let unseen = self.least_late.round() as i64;
+            let unseen = streak.least_periods.round() as i64;
             self.index += unseen;
             self.suspect = Some(Suspect { from: self.index, count: unseen });
         }
-        self.late_streak = 0;
-        self.least_late = f64::INFINITY;
+        self.late = None;
     }
 
     /// Here before it was sent: fewer were lost than it seemed.

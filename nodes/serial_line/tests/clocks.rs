@@ -62,9 +62,9 @@ fn lost_records_are_counted_in_whether_the_decoder_saw_them_or_not() {
     }
     assert_eq!(unseen, 6);
     let (rms, _) = rms_ms(&errors, 200);
-    assert!(rms < 2.0, "a loss is noticed within 16 records: {rms} ms");
+    assert!(rms < 2.0, "a loss is noticed within a quarter of a second: {rms} ms");
     let wrong = errors[200..].iter().filter(|e| e.abs() * MS > 1.0).count();
-    assert!(wrong < 6 * 30, "{wrong} of {} stamps are off by more than 1 ms", errors.len());
+    assert!(wrong < 6 * 40, "{wrong} of {} stamps are off by more than 1 ms", errors.len());
 }
 
 #[test]
@@ -72,12 +72,12 @@ fn a_silence_starts_the_count_anew_and_a_burst_does_not() {
     let mut lock = RateLock::new(Some(1e7));
     let mut faults = late(5, 3);
     locked(&mut lock, 1e7, 500, &mut faults);
-    // The host was stopped for 120 ms: twelve records arrive at once.
+    // The host was stopped for 120 ms, and for 400: as many records arrive at once.
     let errors: Vec<f64> = (500..1000)
         .map(|k: i64| {
             let truth = k * 10_000_000;
-            let arrival =
-                if k < 512 { 5_125_000_000 } else { faults.deliver(truth, &[0]).due_nanos.max(5_125_000_000) };
+            let stopped = [5_000..5_125, 7_000..7_400].into_iter().find(|ms| ms.contains(&(k * 10)));
+            let arrival = faults.deliver(truth, &[0]).due_nanos.max(stopped.map_or(0, |ms| ms.end * 1_000_000));
             (lock.undelay(arrival, 0).nanos - truth) as f64
         })
         .collect();

@@ -191,19 +191,7 @@ fn each_illness_is_its_own_sentence_and_is_survived() {
     for (mood, words) in
         [(Mood::Silent, "says nothing"), (Mood::Test, "test mode"), (Mood::WrongBaud, "no record of a bird")]
     {
-        while rig.news.try_recv().is_ok() {}
-        let began = Instant::now();
-        pty.device().set_mood(mood);
-        let mut told = rig.trouble();
-        println!("{mood:?}: named after {:?}: {told}", began.elapsed());
-        // The stream ends before it is clear why.
-        while !told.contains(words) {
-            told = rig.trouble();
-        }
-        pty.device().set_mood(Mood::Well);
-        rig.streaming();
-        while rig.session.next(Duration::ZERO).is_some() {}
-        rig.poses(20);
+        rig.survives(words, || pty.device().set_mood(mood), || pty.device().set_mood(Mood::Well));
     }
 }
 
@@ -229,15 +217,11 @@ fn a_port_that_is_pulled_and_plugged_in_again_goes_on() {
     assert!(rig.trouble().contains("there is no"));
     let pty = plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, Some(&link), clock);
     rig.poses(50);
-    while rig.news.try_recv().is_ok() {}
-    let began = Instant::now();
-    drop(pty);
-    let told = rig.trouble();
-    println!("named after {:?}", began.elapsed());
-    assert!(told.contains("went away"), "{told}");
-    let _again = plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, Some(&link), clock);
-    rig.streaming();
-    rig.poses(50);
+    let _again = rig.survives(
+        "went away",
+        || drop(pty),
+        || plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, Some(&link), clock),
+    );
     assert_eq!(rig.session.counts().starts, 2);
 }
 

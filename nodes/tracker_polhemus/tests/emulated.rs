@@ -10,7 +10,6 @@ use harness::Listener;
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{FaultsConfig, HostClock, Pty};
 use std::path::Path;
-use std::time::Duration;
 use tracker_polhemus::emulator::{EmulatorConfig, Mood, PolhemusEmulator, World};
 use tracker_polhemus::port::Polhemus;
 use tracker_polhemus::protocol::records::Family;
@@ -72,12 +71,7 @@ fn each_illness_is_its_own_sentence_and_is_survived() {
     let mut rig = listen(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
     rig.poses(20);
     for (mood, words) in [(Mood::Silent, "says nothing"), (Mood::WrongBaud, "no record of a Liberty")] {
-        pty.device().set_mood(mood);
-        assert!(rig.trouble().contains(words));
-        pty.device().set_mood(Mood::Well);
-        rig.streaming();
-        while rig.session.next(Duration::ZERO).is_some() {}
-        rig.poses(20);
+        rig.survives(words, || pty.device().set_mood(mood), || pty.device().set_mood(Mood::Well));
     }
 }
 
@@ -90,10 +84,8 @@ fn a_port_that_is_pulled_and_plugged_in_again_goes_on() {
     let pty = plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
     let mut rig = listen(Config { port: link.clone(), family, ..Config::default() }, clock);
     rig.poses(50);
-    drop(pty);
-    assert!(rig.trouble().contains("went away"));
-    let _again = plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
-    rig.poses(100);
+    let again = || plugged(EmulatorConfig::of(family), FaultsConfig::default(), Some(&link), clock);
+    let _again = rig.survives("went away", || drop(pty), again);
     assert_eq!(rig.session.counts().starts, 2);
 }
 

@@ -42,6 +42,24 @@ impl<T: PoseTracker> Listener<T> {
         self.first(|news| if let News::Streaming(words) = news { Some(words) } else { None })
     }
 
+    /// What is done to it is named in these words; when that is undone, poses come again. Returns what undoing gave.
+    pub fn survives<P>(&mut self, words: &str, ill: impl FnOnce(), well: impl FnOnce() -> P) -> P {
+        while self.news.try_recv().is_ok() {}
+        let began = Instant::now();
+        ill();
+        let mut told = self.trouble();
+        println!("named after {:?}: {told}", began.elapsed());
+        // The stream ends before it is clear why.
+        while !told.contains(words) {
+            told = self.trouble();
+        }
+        let undone = well();
+        self.streaming();
+        while self.session.next(Duration::ZERO).is_some() {}
+        self.poses(20);
+        undone
+    }
+
     fn first(&self, mut wanted: impl FnMut(News) -> Option<String>) -> String {
         let mut next = || self.news.recv_timeout(LONG).unwrap().1;
         std::iter::repeat_with(&mut next).find_map(&mut wanted).unwrap()
