@@ -2,8 +2,8 @@
 
 use crate::operator::Order;
 use crate::{
-    cluster_cmd, compare_cmd, demo, echo, hz, live, model_cmd, record_cmd, refine_cmd, replay_cmd, scan, stripe_cmd,
-    surface_cmd, top, topics, up,
+    cluster_cmd, compare_cmd, demo, echo, emulate, hz, live, model_cmd, record_cmd, refine_cmd, replay_cmd, scan,
+    stripe_cmd, surface_cmd, top, topics, up,
 };
 use anyhow::Result;
 #[cfg(feature = "v4l")]
@@ -75,6 +75,9 @@ pub enum Command {
     Replay(replay_cmd::Args),
     /// List the cameras and serial ports of this machine, and what keeps you from them.
     Devices,
+    /// Play a tracker byte for byte at the end of a serial line, watching the simulated hand.
+    #[command(after_help = emulate::HELP)]
+    Emulate(emulate::Args),
     /// Find the laser's stripe in a picture.
     #[command(after_help = stripe_cmd::HELP)]
     Stripe(stripe_cmd::Args),
@@ -138,6 +141,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Model(args) => model_cmd::run(&args),
         Command::Refine(args) => refine_cmd::run(&args),
         Command::Devices => live::print(&devices::list(Path::new("/"), inspect).to_string()),
+        Command::Emulate(args) => emulate::run(&args),
         Command::Up(args) => up::run(&args),
         Command::Scan { order, rig } => scan::run(order, &rig),
         Command::Top(rig) => top::run(&rig),

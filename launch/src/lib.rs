@@ -29,6 +29,7 @@ pub mod decode;
 pub mod demo;
 mod desk;
 mod echo;
+mod emulate;
 pub mod file;
 pub mod graph;
 mod hz;

@@ -153,15 +153,15 @@ fn tell(event: &Event, status: &Status, say: &impl Fn(LogLevel, String)) {
 }
 
 /// What a person, a service manager or a closing terminal send to stop a program.
-struct Interrupts([Signal; 3]);
+pub(crate) struct Interrupts([Signal; 3]);
 
 impl Interrupts {
-    fn open() -> Result<Self> {
+    pub(crate) fn open() -> Result<Self> {
         let open = |kind| signal(kind).context("taking a signal");
         Ok(Self([open(SignalKind::interrupt())?, open(SignalKind::terminate())?, open(SignalKind::hangup())?]))
     }
 
-    async fn next(&mut self) {
+    pub(crate) async fn next(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.0;
         tokio::select! {
             _ = interrupt.recv() => {}

@@ -1,5 +1,6 @@
 //! Whole rigs as real processes on a real bus: what the tests in `tests/` share.
 
+pub mod emulated;
 pub mod rig;
 
 use std::path::{Path, PathBuf};
@@ -72,6 +73,17 @@ pub fn short_sets(up: &mut Command, out: &Path) {
         up.args(["--set", set]);
     }
 }
+
+/// What a scan of a few seconds is made with where its decimals count: refinement hears the last one of a pose, and such a
+/// scan gives it little to hold on to.
+pub const UNREFINED: [&str; 6] = [
+    "--set",
+    "nodes.refine.enabled=false",
+    "--set",
+    "nodes.cluster.inputs.world=head",
+    "--set",
+    "nodes.paint.inputs.world=head",
+];
 
 /// A number of a report, by its path.
 ///

@@ -4,17 +4,7 @@
 
 use std::path::Path;
 use system_tests::rig::{Course, Rig, signal, wait_for_ready};
-use system_tests::{limn, lost, number, report, short_up, succeed};
-
-/// Refinement hears the last decimal of a pose, and a scan of 6 s gives it little to hold on to.
-const UNREFINED: [&str; 6] = [
-    "--set",
-    "nodes.refine.enabled=false",
-    "--set",
-    "nodes.cluster.inputs.world=head",
-    "--set",
-    "nodes.paint.inputs.world=head",
-];
+use system_tests::{UNREFINED, limn, lost, number, report, short_up, succeed};
 
 /// `limn model` of an input; all that decides the model is said here, since a folder tells no settings.
 fn model(input: &Path, out: &Path) -> serde_json::Value {

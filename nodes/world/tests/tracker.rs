@@ -64,6 +64,24 @@ fn without_errors_it_tells_the_truth() {
 }
 
 #[test]
+fn between_its_readings_it_shows_the_hand_and_at_them_what_they_say() {
+    let rig = but(&[("position_noise_mm", 1.5), ("rotation_noise_deg", 3.0), ("field_position_mm", 5.0)]);
+    let tracker = Tracker::new(&rig, hand(&rig), 1).unwrap();
+    for index in [0, 1, 30, 517, tracker.count() - 1] {
+        let said = rigid_from_wire(&tracker.sample(index).unwrap().world_from_body).unwrap();
+        let shown = tracker.at(tracker.time_s(index));
+        assert!((shown.translation.vector - said.translation.vector).norm() < 1e-12);
+        assert!(shown.rotation.angle_to(&said.rotation) < 1e-9);
+    }
+    let perfect = but(&[]);
+    let (hand, tracker) = (hand(&perfect), Tracker::new(&perfect, hand(&perfect), 1).unwrap());
+    for t_s in [-1.0, 3.1234, 99.0] {
+        let off = tracker.at(t_s).translation.vector - hand.world_from_body(t_s).translation.vector;
+        assert!(off.norm() < 1e-12, "{t_s} s");
+    }
+}
+
+#[test]
 fn white_noise_has_the_stated_length_and_no_memory() {
     let all = errors(&but(&[("position_noise_mm", 1.5), ("rotation_noise_deg", 3.0)]), 1);
     assert_near("position", rms(all.iter().map(|e| e[0])), 1.5e-3, 0.05);

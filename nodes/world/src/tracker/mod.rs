@@ -94,6 +94,13 @@ impl Tracker {
         })
     }
 
+    /// world_from_body as it shows it at any moment, with the noise of the nearest reading: for a device that measures in
+    /// its own time, and has latency, clock and losses of its own.
+    pub fn at(&self, t_s: f64) -> Isometry3<f64> {
+        let index = ((t_s + MARGIN_S) * self.section.rate_hz).round().max(0.0) as u64;
+        self.distorted(t_s, index)
+    }
+
     fn stream(&self, stream: Stream) -> u64 {
         self.seed.wrapping_add(stream as u64)
     }

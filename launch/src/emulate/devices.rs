@@ -1,0 +1,112 @@
+//! The devices that can be played, and what can be asked of each.
+
+use super::Common;
+use super::hand::Beginning;
+use anyhow::{Result, ensure};
+use tracker_flock::emulator::FlockEmulator;
+use tracker_polhemus::emulator::PolhemusEmulator;
+use tracker_polhemus::protocol::records::Family;
+
+/// One of them.
+#[derive(Debug, clap::Subcommand)]
+pub enum Device {
+    /// An Ascension Flock of Birds: one bird alone, or several in group mode.
+    Flock(Box<Flock>),
+    /// A Polhemus Fastrak, Liberty or Patriot.
+    Polhemus(Box<Polhemus>),
+}
+
+/// A Flock of Birds.
+#[derive(Debug, clap::Args)]
+pub struct Flock {
+    /// How many units, addresses from 1, that answer in group mode; 0 is a bird alone.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=14))]
+    pub units: u8,
+    /// The address of the first unit with a sensor: those before it are extended range controllers.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=14))]
+    pub first_sensor: u8,
+    /// As its switches have it; 0 is a line that takes no time.
+    #[arg(long, value_name = "N", default_value_t = 115_200)]
+    pub baud: u32,
+    /// Measurements a second, 20 to 144, until the host asks for another rate.
+    #[arg(long, value_name = "N", default_value_t = 103.0)]
+    pub rate_hz: f64,
+    /// The measure of metal that it tells, 0 to 127.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(0..=127))]
+    pub metal: u8,
+    /// Its own adaptive filter: steady at rest, late in motion. Beside the one that the rig file's tracker has.
+    #[arg(long)]
+    pub adaptive_filter: bool,
+    /// It changes its mind so often about the half of space that its sensors are in.
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    pub flip_every: f64,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+impl Flock {
+    /// The flock, switched on.
+    pub(super) fn emulator(&self, beginning: &Beginning) -> Result<FlockEmulator> {
+        ensure!((20.0..=144.0).contains(&self.rate_hz), "--rate-hz {}: 20 to 144", self.rate_hz);
+        ensure!((0.0..=1e6).contains(&self.flip_every), "--flip-every {}: 0 to 1000000 s", self.flip_every);
+        let (first, units) = (self.first_sensor, self.units);
+        ensure!(first <= units.max(1), "--first-sensor {first}: there are {units} units");
+        let config = tracker_flock::emulator::EmulatorConfig {
+            units,
+            first_sensor: first,
+            baud: self.baud,
+            rate_hz: self.rate_hz,
+            filters: self.adaptive_filter,
+            metal: self.metal,
+            flip_every_nanos: (self.flip_every * 1e9) as i64,
+            ..Default::default()
+        };
+        Ok(FlockEmulator::new(config, self.common.hand.sensors(first, beginning.clone())?))
+    }
+}
+
+/// A Polhemus.
+#[derive(Debug, clap::Args)]
+pub struct Polhemus {
+    /// `fastrak`, `liberty` or `patriot`.
+    #[arg(long, value_name = "NAME", default_value = "liberty", value_parser = family)]
+    pub family: Family,
+    /// How many stations have a sensor.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub stations: u8,
+    /// As its switches have it; 0 is a line that takes no time.
+    #[arg(long, value_name = "N", default_value_t = 115_200)]
+    pub baud: u32,
+    /// Records a second from each station; the family's own when not said.
+    #[arg(long, value_name = "N")]
+    pub rate_hz: Option<f64>,
+    /// The level of distortion that it tells: metal is near.
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    pub distortion: i32,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+impl Polhemus {
+    /// The device, switched on.
+    pub(super) fn emulator(&self, beginning: &Beginning) -> Result<PolhemusEmulator> {
+        let most = self.family.most_stations();
+        ensure!((1..=most).contains(&self.stations), "--stations {}: a {:?} has {most}", self.stations, self.family);
+        let stations = (1..=self.stations).collect();
+        let driver =
+            tracker_polhemus::Config { family: self.family, stations, rate_hz: self.rate_hz, ..Default::default() };
+        driver.check()?;
+        let config = tracker_polhemus::emulator::EmulatorConfig {
+            stations: self.stations,
+            baud: self.baud,
+            rate_hz: driver.sheet().rate_hz,
+            distortion: self.distortion,
+            ..tracker_polhemus::emulator::EmulatorConfig::of(self.family)
+        };
+        Ok(PolhemusEmulator::new(config, self.common.hand.sensors(1, beginning.clone())?))
+    }
+}
+
+fn family(name: &str) -> Result<Family, String> {
+    serde_json::from_value(serde_json::Value::from(name)).map_err(|_| "fastrak, liberty or patriot".to_owned())
+}

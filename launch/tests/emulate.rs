@@ -1,0 +1,60 @@
+//! `limn emulate`, as a person starts and stops it.
+
+#![allow(clippy::unwrap_used, reason = "a helper that cannot go on has failed its test")]
+
+use std::io::{BufRead as _, BufReader};
+use std::os::unix::fs::FileTypeExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+fn emulate(device: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_limn"));
+    command.args(["emulate", device, "--seconds", "2", "--rig"]).arg(repository("config/rigs/fine.toml"));
+    command.arg("--scene").arg(repository("config/scenes/cow.toml")).stdin(Stdio::null());
+    command
+}
+
+#[test]
+fn it_says_where_it_is_and_leaves_no_link_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    for (device, name) in [("flock", "a Flock of Birds is on /dev/"), ("polhemus", "a Liberty is on /dev/")] {
+        let link = folder.path().join(device);
+        // What a run before left, which was killed.
+        std::os::unix::fs::symlink("/no/such/port", &link).unwrap();
+        let mut child = emulate(device).arg("--link").arg(&link).stdout(Stdio::piped()).spawn().unwrap();
+        let mut said = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut said).unwrap();
+        assert!(said.starts_with(name) && said.contains(device), "{said}");
+        assert!(std::fs::metadata(&link).unwrap().file_type().is_char_device());
+        let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(interrupted.success() && child.wait().unwrap().success());
+        assert!(!link.is_symlink(), "{device}");
+    }
+}
+
+#[test]
+fn what_cannot_be_played_is_refused_by_name() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let taken = file.path().to_str().unwrap();
+    let cases: [(&str, &[&str], &str); 9] = [
+        ("flock", &["--rate-hz", "145"], "--rate-hz 145"),
+        ("flock", &["--first-sensor", "3", "--units", "2"], "--first-sensor 3"),
+        ("flock", &["--metal", "128"], "--metal"),
+        ("flock", &["--flip-every=-1"], "--flip-every -1"),
+        ("flock", &["--cut-every", "5"], "--cut-for"),
+        ("flock", &["--cut-every", "1", "--cut-for", "2"], "--cut-for 2"),
+        ("flock", &["--link", taken], taken),
+        ("polhemus", &["--family", "isotrak"], "fastrak, liberty or patriot"),
+        ("polhemus", &["--family", "patriot", "--stations", "3"], "--stations 3"),
+    ];
+    for (device, arguments, named) in cases {
+        let output = emulate(device).args(arguments).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && said.contains(named), "{arguments:?}: {said}");
+        assert!(!said.contains("panicked"), "{said}");
+    }
+}

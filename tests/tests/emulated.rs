@@ -1,0 +1,223 @@
+//! Whole rigs whose tracker is a real driver node on `limn emulate`, beside the simulated camera: the model is that of the
+//! simulated tracker, poses come at once, and a line that is cut costs what it was cut for and nothing else.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
+use serial_line::{FaultsConfig, HostClock, Pty};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use system_tests::emulated::{Emulated, Tracker, one_at_a_time, simulated};
+use system_tests::rig::{Rig, first, wait_on};
+use system_tests::{limn, number, repository, succeed};
+use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, World};
+use wire::{Pose, Quality, topic};
+
+const FLOCK: Tracker = Tracker {
+    played: &["flock"],
+    found: "6DFOB, revision 3.67",
+    kind: "tracker_flock",
+    config: "hemisphere = 'lower'\nrate_hz = 100.0",
+    seconds: 8.0,
+};
+
+const LIBERTY: Tracker = Tracker {
+    played: &["polhemus", "--family", "liberty"],
+    found: "Polhemus Liberty, emulated",
+    kind: "tracker_polhemus",
+    config: "hemisphere = [0.0, 0.0, 1.0]",
+    seconds: 8.0,
+};
+
+/// How far the surface of one model is from that of the other: the median in millimetres, and which share of it is within
+/// 0.25 mm.
+fn apart(model: &Path, other: &Path) -> (f64, f64) {
+    let meshes = [model, other].map(|out| out.join("mesh.ply"));
+    let output = succeed(limn().arg("compare").args(meshes).arg("--json"));
+    let comparison: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(number(&comparison, "/truth_to_model/within/0/distance_mm"), 0.25);
+    (number(&comparison, "/model_to_truth/median_mm"), number(&comparison, "/truth_to_model/within/0/share"))
+}
+
+/// From the receiver to the surface.
+const LEVER_MM: f64 = 250.0;
+/// The noise of the rig `quick`, root mean square of the whole vector.
+const NOISE_MM: f64 = 0.05;
+const NOISE_DEG: f64 = 0.02;
+
+/// The poses of a sweep against the hand.
+struct Judged {
+    /// Half of the positions are no more wrong than this.
+    median_mm: f64,
+    /// The share of them that puts the surface within 0.25 mm of its place.
+    near: f64,
+    /// Root mean square of the hand's speed.
+    speed_mm_per_s: f64,
+}
+
+/// At the moments that the stamps and the rig's calibration say.
+fn judged(out: &Path, seconds: f64, poses: &[Pose]) -> Judged {
+    let (scene, rig) = (repository("config/scenes/cow.toml"), out.join("quick.toml"));
+    let known = world::Setup { scene, rig, seconds, ..world::Setup::default() }.open().unwrap();
+    let (mut off, mut near, mut square) = (Vec::new(), 0, 0.0);
+    for pose in poses {
+        let t_s = pose.header.stamp_nanos as f64 * 1e-9 + known.rig.clock.pose_offset_s;
+        if !(0.3..seconds).contains(&t_s) {
+            continue;
+        }
+        let said = geometry::rigid_from_wire(&pose.world_from_body).unwrap();
+        let at = |t_s| known.hand.world_from_body(t_s);
+        let truth = at(t_s).translation.vector;
+        let off_mm = (said.translation.vector - truth).norm() * 1e3;
+        let turned = at(t_s - pose.rotation_lag_nanos as f64 * 1e-9).rotation.angle_to(&said.rotation);
+        near += usize::from(off_mm.hypot(turned * LEVER_MM) < 0.25);
+        square += ((at(t_s + 0.001).translation.vector - truth).norm() * 1e6).powi(2);
+        off.push(off_mm);
+    }
+    off.sort_by(f64::total_cmp);
+    let count = off.len() as f64;
+    Judged { median_mm: off[off.len() / 2], near: near as f64 / count, speed_mm_per_s: (square / count).sqrt() }
+}
+
+/// `step_mm` is the step of the device's numbers.
+fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) {
+    let folder = tempfile::tempdir().unwrap();
+    let [played, known] = ["played", "known"].map(|name| folder.path().join(name));
+    let mut rig = Emulated::start(tracker, &played);
+    let bus = rig.rig.bus();
+    let mut poses = bus.subscribe(&topic::pose("head"), 4096).unwrap();
+    rig.scan(&bus);
+    let poses: Vec<Pose> = std::iter::from_fn(|| poses.next()).filter(|pose| !pose.header.is_end()).collect();
+    drop(bus);
+    let (status, said) = rig.end();
+    assert!(status.success() && !said.contains("messages lost"), "{said}");
+    let (status, of_known) = Rig::start(&mut simulated(&known, tracker.seconds)).end();
+    assert!(status.success(), "{of_known}");
+
+    // Noise, steps in three axes, and the hand's way in half a millisecond: what the driver's stamps are held to.
+    let Judged { median_mm, near, speed_mm_per_s } = judged(&played, tracker.seconds, &poses);
+    let sigma = (NOISE_MM.powi(2) + step_mm.powi(2) / 4.0 + (speed_mm_per_s * 0.5e-3).powi(2)).sqrt();
+    println!("{}: half of the positions within {median_mm:.4} mm; sigma {sigma:.4} mm", tracker.kind);
+    assert!(median_mm < sigma, "half of the positions are wrong by more than {median_mm} mm; sigma {sigma} mm");
+    // Two surfaces differ by what the poses of both do, along one axis of three, turned or moved: half of a normal
+    // distribution lies within 0.67 sigma. Nor is the surface farther off than the poses that it was made with.
+    let turn = NOISE_DEG.to_radians() * LEVER_MM;
+    let sigma = ((sigma.powi(2) + NOISE_MM.powi(2) + 2.0 * turn.powi(2)) / 3.0).sqrt();
+    let (median, share) = apart(&played, &known);
+    println!("the models are {median:.4} mm apart in the median; sigma {sigma:.4} mm");
+    println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are");
+    assert!(median < 0.67 * sigma && share > near, "{median} mm, {share}; sigma {sigma} mm, {near}\n{said}");
+}
+
+#[test]
+fn a_flock_on_a_serial_line_gives_the_model_of_the_simulated_tracker() {
+    the_model_is_that_of_the_simulated_tracker(&FLOCK, 0.11);
+}
+
+#[test]
+fn a_liberty_on_a_serial_line_gives_the_model_of_the_simulated_tracker() {
+    the_model_is_that_of_the_simulated_tracker(&LIBERTY, 0.0);
+}
+
+#[test]
+fn a_line_that_is_cut_in_mid_scan_is_named_and_comes_back_and_nothing_else_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let cut = Tracker { played: &["flock", "--cut-every", "5", "--cut-for", "1"], seconds: 12.0, ..FLOCK };
+    let mut rig = Emulated::start(&cut, folder.path());
+    let bus = rig.rig.bus();
+    let mut poses = bus.subscribe(&topic::pose("head"), 4096).unwrap();
+    let mut lines = bus.subscribe(&topic::log("**"), 4096).unwrap();
+    let mut healths = bus.subscribe(&topic::health("**"), 4096).unwrap();
+    rig.scan(&bus);
+    let epoch = first(&bus, &topic::run_phase()).header.stamp_nanos;
+    let poses: Vec<_> = std::iter::from_fn(|| poses.next()).filter(|pose| !pose.header.is_end()).collect();
+    let lines: Vec<_> = std::iter::from_fn(|| lines.next()).filter(|line| line.node == "tracker_flock/head").collect();
+    let lost =
+        std::iter::from_fn(|| healths.next()).flat_map(|health| health.inputs).map(|input| input.lost).sum::<u64>();
+    drop(bus);
+    let (status, said) = rig.end();
+    assert!(status.success(), "{said}");
+    assert_eq!(lost, 0, "{said}");
+    // The longest time without a pose is the one of the cut, or of a cut and what the driver needed to find it whole.
+    let stamps: Vec<i64> = poses.iter().map(|pose| pose.header.stamp_nanos).collect();
+    let gap = stamps.windows(2).max_by_key(|pair| pair[1] - pair[0]).unwrap();
+    let seconds = |nanos: i64| nanos as f64 * 1e-9;
+    assert!(gap[1] - gap[0] > 1_000_000_000, "{} s", seconds(gap[1] - gap[0]));
+    let told = |words: &str| {
+        let mut after =
+            lines.iter().filter(|line| line.text.contains(words)).map(|line| line.header.stamp_nanos - epoch);
+        after.find(|at| *at > gap[0]).unwrap_or_else(|| panic!("{words:?} was not told:\n{said}"))
+    };
+    let (named, found) = (told("says nothing"), told(cut.found));
+    assert!(named < gap[1] && named < found, "{} s, {} s, {} s", seconds(named), seconds(found), seconds(gap[1]));
+    println!("no pose for {:.2} s, named after {:.2}", seconds(gap[1] - gap[0]), seconds(named - gap[0]));
+    assert!(stamps.last().is_some_and(|last| *last > gap[1]), "it came back");
+    assert!(folder.path().join("mesh.ply").is_file(), "{said}");
+}
+
+/// An emulator that tells when it gave each record away.
+struct Told {
+    flock: FlockEmulator,
+    clock: HostClock,
+    told: Sender<(i64, i64)>,
+}
+
+impl serial_line::Emulated for Told {
+    fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
+        self.flock.hear(bytes, now_nanos);
+    }
+    fn speak(&mut self, now_nanos: i64) -> Option<(i64, Vec<u8>)> {
+        let said = self.flock.speak(now_nanos)?;
+        // Nobody listens any more when the test is over.
+        let _ = self.told.send((said.0, self.clock.now_nanos()));
+        Some(said)
+    }
+}
+
+/// From the write of each record into the pseudo-terminal to its pose on the bus, in another process: milliseconds, sorted.
+fn delays_ms(bus: &bus::Bus, clock: HostClock, told: &Receiver<(i64, i64)>, count: usize) -> Vec<f64> {
+    let mut poses = bus.subscribe(&topic::pose("head"), 4096).unwrap();
+    let (mut written, mut delays) = (Vec::new(), Vec::new());
+    let older_nanos = tracker_flock::Config::default().latencies_nanos().0 + serial_line::wire_nanos(24, 115_200);
+    wait_on(bus, "too few poses", || {
+        while let Some(pose) = poses.next() {
+            let now = clock.now_nanos();
+            written.extend(told.try_iter());
+            let left = clock.from_system(pose.header.stamp_nanos) + older_nanos;
+            // Whose it is, its stamp tells: it is good to a fraction of the 10 ms between two records.
+            let of: Option<&(i64, i64)> = written.iter().min_by_key(|(at, _)| (at - left).abs());
+            if let Some((at, wrote)) = of.filter(|_| pose.quality == Quality::Good)
+                && (at - left).abs() < 4_000_000
+            {
+                delays.push((now - wrote) as f64 * 1e-6);
+            }
+        }
+        (delays.len() >= count).then_some(())
+    });
+    delays.sort_by(f64::total_cmp);
+    delays
+}
+
+/// A figure, not a bound: `cargo test --workspace --test emulated -- --nocapture from_the_emulators_write`.
+#[test]
+fn from_the_emulators_write_to_the_pose_on_the_bus() {
+    let folder = tempfile::tempdir().unwrap();
+    let clock = HostClock::start();
+    let (told, written) = channel();
+    let world: World = Box::new(|_, _| (nalgebra::Vector3::new(0.3, -0.1, 0.2), nalgebra::UnitQuaternion::identity()));
+    let _alone = one_at_a_time();
+    let flock = FlockEmulator::new(EmulatorConfig { rate_hz: 100.0, ..EmulatorConfig::default() }, world);
+    let pty = Pty::start(Told { flock, clock, told }, FaultsConfig::default(), clock, None).unwrap();
+    let launch = folder.path().join("alone.toml");
+    let text = format!(
+        "[run]\nbegin = 'both'\n[nodes.tracker]\nkind = 'tracker_flock'\ninstance = 'head'\n\
+         [nodes.tracker.config]\nport = {:?}\nrate_hz = 100.0\n",
+        pty.path()
+    );
+    std::fs::write(&launch, text).unwrap();
+    let mut rig = Rig::start(limn().arg("up").arg(&launch));
+    let bus = rig.bus();
+    let delays = delays_ms(&bus, clock, &written, 1000);
+    let at = |share: f64| delays[((delays.len() - 1) as f64 * share) as usize];
+    println!("from write to bus: {:.2} ms median, {:.2} ms 99 %, {} records", at(0.5), at(0.99), delays.len());
+    assert!(delays[0] > 0.0, "nothing comes before it was sent: {} ms", delays[0]);
+}
