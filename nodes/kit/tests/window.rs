@@ -1,5 +1,7 @@
 //! A source at a fast pace keeps step with the nodes behind it, and is never held for good.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
+
 use kit::{Bus, BusConfig, Go, Node, NodeSpec, Pace};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

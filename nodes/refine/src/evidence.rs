@@ -26,6 +26,8 @@ pub struct Evidence {
     pub frames_without_pose: usize,
     /// What was refused on the way in.
     pub refused: Vec<RefusedInput>,
+    /// Points left out because other strokes looked through where they hang; 0 in live revisions.
+    pub seen_through: usize,
     /// Each frame that was kept.
     pub frames: Vec<FrameEvidence>,
 }

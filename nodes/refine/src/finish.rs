@@ -9,6 +9,7 @@ use crate::outcome::outcome;
 use crate::refinement::Refinement;
 use crate::scene::{Placed, Problem};
 use crate::schedule::{judging, wide};
+use crate::seen_through::carve;
 use crate::solver::{self, Noise, Solution};
 use crate::step::look;
 use crate::testimony::{globals, refused, tracker};
@@ -60,7 +61,8 @@ pub(crate) fn finish(
     let (problem, x, judged, noise) =
         if kept { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
     let prior = solver::prior(config, &noise, problem);
-    let out = outcome(config, problem, &prior, judged, x);
+    let mut out = outcome(config, problem, &prior, judged, x);
+    let carved = carve(&mut out.frames);
     let (clock, hand_eye) = globals(problem, &prior, &wide_after, solution.free, x);
     let observed =
         Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: held.directions };
@@ -75,6 +77,7 @@ pub(crate) fn finish(
         dropped: out.dropped,
         frames_without_pose: gathered.frames.len() - frames.len(),
         refused: refused(gathered),
+        seen_through: carved,
         frames: out.kept,
     };
     Ok(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })

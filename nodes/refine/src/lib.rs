@@ -92,6 +92,7 @@ mod refiner;
 mod scene;
 mod schedule;
 mod schur;
+mod seen_through;
 mod sentence;
 mod solver;
 mod spline;

@@ -82,6 +82,7 @@ pub(crate) fn tick(
         dropped: out.dropped,
         frames_without_pose: gathered.frames.len() - frames.len(),
         refused: refused(gathered),
+        seen_through: 0,
         frames: out.kept,
     };
     live.unknowns = Some(problem.unknowns);

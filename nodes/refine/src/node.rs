@@ -254,6 +254,7 @@ impl Course {
 
 fn say(node: &mut Node, evidence: &Evidence) {
     evidence.refused.iter().for_each(|refused| node.refuse(&refused.reason, refused.count));
+    node.refuse("point where other strokes looked through", evidence.seen_through as u64);
     node.refuse("frame that fits nowhere or is held by nothing", evidence.dropped.len() as u64);
     evidence.notices.iter().for_each(|notice| tracing::warn!("{}", sentence(notice)));
     tracing::info!(

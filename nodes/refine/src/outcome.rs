@@ -28,7 +28,12 @@ const MARGIN_NANOS: i64 = 500_000_000;
 /// Points that the gauge is fixed by.
 const GAUGE_POINTS: usize = 20_000;
 /// A frame is not dropped for a residual below this: it may be the grain of the surface.
-const LEAST_MISFIT_M: f64 = 3e-4;
+const LEAST_MISFIT_M: f64 = 2e-4;
+/// A tracker that is better than this puts no frame so far off that the surface could tell: what does not fit, or was seen
+/// by nobody else, is the shape's own detail.
+const GOOD_TRACKER_M: f64 = 3e-4;
+/// A frame of which others saw less than this share may stand anywhere, and fit itself wherever it stands.
+const LEAST_HELD: f64 = 0.2;
 /// From the handset to what it measures, about.
 const LEVER_M: f64 = 0.2;
 /// A frame whose points are known so many times worse than those of half of the frames is held by nothing ...
@@ -60,7 +65,7 @@ pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged:
         let stamp_nanos = frame.pose.stamp_nanos;
         let residual_mm = Some(judgement.residual_m * 1e3).filter(|residual| residual.is_finite());
         let sigma_m = frame.across_sigma_m;
-        match bounds.reason(judgement.residual_m, sigma_m) {
+        match bounds.reason(judgement, sigma_m) {
             Some(reason) => {
                 dropped.push(DroppedFrame { stamp_nanos, reason, residual_mm, sigma_mm: sigma_m * 1e3 });
             }
@@ -73,30 +78,31 @@ pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged:
     Outcome { trajectory, frames, kept, dropped }
 }
 
-/// What no frame may exceed.
+/// What no frame may exceed, or fall below.
 struct Bounds {
     residual_m: f64,
     sigma_m: f64,
+    held: f64,
 }
 
 impl Bounds {
     fn new(config: &Config, problem: &Problem, judged: &Judgement, frames: &[RefinedFrame]) -> Self {
         let [position_m, rotation_rad] = problem.smoothed.white();
-        // A tracker that is so good puts no frame so far off: what does not fit is the shape's own detail.
-        let tracker_m = position_m.hypot(rotation_rad * LEVER_M);
-        let misfit = if tracker_m < LEAST_MISFIT_M { f64::INFINITY } else { LEAST_MISFIT_M };
+        let is_good = position_m.hypot(rotation_rad * LEVER_M) < GOOD_TRACKER_M;
+        let (misfit, held) = if is_good { (f64::INFINITY, 0.0) } else { (LEAST_MISFIT_M, LEAST_HELD) };
         let residual = median(judged.frames.iter().map(|frame| frame.residual_m).filter(|r| r.is_finite()).collect());
         let sigma = median(frames.iter().map(|frame| frame.across_sigma_m).collect());
         Self {
             residual_m: (config.most_residual * residual).max(misfit),
             sigma_m: (UNHELD * sigma).max(LEAST_UNHELD_M),
+            held,
         }
     }
 
-    fn reason(&self, residual_m: f64, sigma_m: f64) -> Option<DropReason> {
-        if residual_m > self.residual_m {
+    fn reason(&self, frame: &FrameJudgement, sigma_m: f64) -> Option<DropReason> {
+        if frame.residual_m > self.residual_m {
             Some(DropReason::FitsNowhere)
-        } else if sigma_m > self.sigma_m {
+        } else if sigma_m > self.sigma_m || frame.held < self.held {
             Some(DropReason::Unheld)
         } else {
             None

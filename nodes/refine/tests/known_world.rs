@@ -23,6 +23,9 @@ fn refined(sweep: &Sweep) -> Result {
     let scans: Vec<Scan> = refinement.scans().collect();
     let (fit, smoothed) = (measure::fit(sweep, &scans), measure::fit(sweep, &sweep.smoothed()));
     println!("smoothed {smoothed}\nrefined  {fit}");
+    let [inliers, outliers] = measure::left_out(sweep, &scans);
+    println!("left out: {inliers:.4} of the inliers, {outliers:.3} of the outliers");
+    assert!(inliers < 0.006, "{inliers} of the inliers were left out");
     let coverage = measure::coverage(sweep, &scans);
     Result { refinement, scans, fit, smoothed, coverage }
 }

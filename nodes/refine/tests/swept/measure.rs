@@ -1,10 +1,10 @@
 //! How far points are from the truth, as they are and after the best rigid motion.
 
 use super::Sweep;
-use geometry::MeshIndex;
+use geometry::{MeshIndex, rigid_from_wire};
 use nalgebra::{Cholesky, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 use rayon::prelude::*;
-use wire::Scan;
+use wire::{ProfilePoint, Scan, ScanPoint};
 
 /// Millimetres.
 #[derive(Debug, Clone, Copy)]
@@ -36,14 +36,9 @@ const MOST_POINTS: usize = 40_000;
 pub fn fit(sweep: &Sweep, scans: &[Scan]) -> Fit {
     let mut pairs: Vec<(Point3<f64>, Point3<f64>)> = Vec::new();
     for scan in scans {
-        let Ok(k) = sweep.profiles.binary_search_by_key(&scan.header.stamp_nanos, |p| p.header.stamp_nanos) else {
-            panic!("a scan that no profile stands for")
-        };
-        let way = sweep.world_from_camera(scan.header.stamp_nanos);
-        assert_eq!(scan.points.len(), sweep.wild[k].len());
-        let points = scan.points.iter().zip(sweep.profiles[k].points.iter()).zip(&sweep.wild[k]);
-        pairs.extend(points.filter(|(_, wild)| !**wild).map(|((point, exact), _)| {
-            let truth = way * Point3::from(exact.position_m).cast::<f64>();
+        let (k, way) = (profile_of(sweep, scan), sweep.world_from_camera(scan.header.stamp_nanos));
+        pairs.extend(inliers(sweep, scan).map(|(point, i)| {
+            let truth = way * Point3::from(sweep.profiles[k].points[i].position_m).cast::<f64>();
             (Point3::from(point.position_m).cast::<f64>(), truth)
         }));
     }
@@ -65,6 +60,40 @@ pub fn fit(sweep: &Sweep, scans: &[Scan]) -> Fit {
         bias: thing.iter().sum::<f64>() / thing.len().max(1) as f64 * 1e3,
         same_point: same.sqrt() * 1e3,
     }
+}
+
+fn profile_of(sweep: &Sweep, scan: &Scan) -> usize {
+    sweep.profiles.binary_search_by_key(&scan.header.stamp_nanos, |p| p.header.stamp_nanos).unwrap()
+}
+
+/// The points of a scan, each with its place in the profile: some were left out, the others keep their order.
+fn placed<'a>(sweep: &'a Sweep, scan: &'a Scan) -> impl Iterator<Item = (&'a ScanPoint, usize)> {
+    let camera_from_world = rigid_from_wire(&scan.world_from_camera).unwrap().inverse();
+    let profile = &sweep.profiles[profile_of(sweep, scan)].points;
+    let mut next = 0;
+    scan.points.iter().map(move |point| {
+        let seen = camera_from_world * Point3::from(point.position_m).cast::<f64>();
+        let is_it = |exact: &ProfilePoint| (seen - Point3::from(exact.position_m).cast::<f64>()).norm() < 1e-6;
+        let i = next + profile[next..].iter().position(is_it).unwrap();
+        next = i + 1;
+        (point, i)
+    })
+}
+
+fn inliers<'a>(sweep: &'a Sweep, scan: &'a Scan) -> impl Iterator<Item = (&'a ScanPoint, usize)> {
+    let wild = &sweep.wild[profile_of(sweep, scan)];
+    placed(sweep, scan).filter(|(_, i)| !wild[*i])
+}
+
+/// Of the inliers and of the outliers of the frames that were kept, the share that was left out.
+pub fn left_out(sweep: &Sweep, scans: &[Scan]) -> [f64; 2] {
+    let (mut came, mut kept) = ([0usize; 2], [0usize; 2]);
+    for scan in scans {
+        let wild = &sweep.wild[profile_of(sweep, scan)];
+        wild.iter().for_each(|wild| came[usize::from(*wild)] += 1);
+        placed(sweep, scan).for_each(|(_, i)| kept[usize::from(wild[i])] += 1);
+    }
+    [0, 1].map(|kind| 1.0 - kept[kind] as f64 / came[kind].max(1) as f64)
 }
 
 fn rms(d: &[f64]) -> f64 {
@@ -126,9 +155,7 @@ pub fn frames(sweep: &Sweep, scans: &[Scan]) -> Vec<(i64, usize, f64, f64)> {
         scans.iter().flat_map(|s| s.points.iter()).map(|p| Point3::from(p.position_m).cast()).collect();
     let motion = align(&sweep.truth, &all);
     let one = |scan: &Scan| {
-        let k = sweep.profiles.binary_search_by_key(&scan.header.stamp_nanos, |p| p.header.stamp_nanos).unwrap();
-        let good = scan.points.iter().zip(&sweep.wild[k]).filter(|(_, wild)| !**wild);
-        let points: Vec<Point3<f64>> = good.map(|(p, _)| Point3::from(p.position_m).cast()).collect();
+        let points: Vec<Point3<f64>> = inliers(sweep, scan).map(|(p, _)| Point3::from(p.position_m).cast()).collect();
         let d: Vec<f64> = distances(&sweep.truth, &points, &motion).iter().map(|d| d.0 * 1e3).collect();
         (scan.header.stamp_nanos, points.len(), rms(&d), d.iter().sum::<f64>() / d.len().max(1) as f64)
     };
@@ -139,8 +166,7 @@ pub fn frames(sweep: &Sweep, scans: &[Scan]) -> Vec<(i64, usize, f64, f64)> {
 pub fn coverage(sweep: &Sweep, scans: &[Scan]) -> [f64; 2] {
     let (mut points, mut sigmas) = (Vec::new(), Vec::new());
     for scan in scans {
-        let k = sweep.profiles.binary_search_by_key(&scan.header.stamp_nanos, |p| p.header.stamp_nanos).unwrap();
-        for (point, _) in scan.points.iter().zip(&sweep.wild[k]).filter(|(_, wild)| !**wild).step_by(5) {
+        for (point, _) in inliers(sweep, scan).step_by(5) {
             points.push(Point3::from(point.position_m).cast::<f64>());
             sigmas.push(f64::from(point.sigma_m));
         }
