@@ -1,7 +1,8 @@
 //! The table on which the thing stands: found as the largest plane that nothing lies behind, and taken away.
 //!
 //! The paper cut its cow out by hand. Here: random triples of balls give planes (RANSAC, Fischler & Bolles 1981), of
-//! which the best by count is fitted again to what lies on it; what lies on it or behind it goes.
+//! which the best by count, of those that nothing lies behind, is fitted again to what lies on it; what lies on it or behind
+//! it goes. A face of the thing itself has the rest of the thing behind it.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use wire::CloudPoint;
@@ -20,9 +21,9 @@ pub struct TablePlane {
 }
 
 /// A plane counts as a table when so many of all balls lie on it, and so many at most behind it.
-const LEAST_SHARE: f64 = 0.15;
+const LEAST_SHARE: f64 = 0.05;
 const MOST_BEHIND: f64 = 0.02;
-const TRIALS: usize = 400;
+const TRIALS: usize = 1500;
 /// The trials look at no more balls than this, evenly spread: the plane is fitted to all of them afterwards.
 const LOOKED_AT: usize = 4000;
 /// In the trials, a ball within this of a plane lies on it.
@@ -37,6 +38,10 @@ impl TablePlane {
     pub fn find(points: &[CloudPoint]) -> Option<Self> {
         let step = points.len().div_ceil(LOOKED_AT).max(1);
         let looked_at: Vec<&CloudPoint> = points.iter().step_by(step).collect();
+        let faces_all = |normal: &Vector3<f64>, distance_m: f64| {
+            let behind = |ball: &&&CloudPoint| normal.dot(&at(ball).coords) - distance_m < -NEAR_M;
+            looked_at.iter().filter(behind).count() as f64 <= MOST_BEHIND * looked_at.len() as f64
+        };
         let on = |normal: &Vector3<f64>, distance_m: f64| {
             looked_at.iter().filter(|ball| on_plane(ball, normal, distance_m, NEAR_M)).count()
         };
@@ -46,7 +51,8 @@ impl TablePlane {
             };
             let (a, b, c) = (pick(0)?, pick(1)?, pick(2)?);
             let normal = (b - a).cross(&(c - a)).try_normalize(1e-9)?;
-            Some((normal, normal.dot(&a.coords)))
+            let plane = (normal, normal.dot(&a.coords));
+            [plane, (-plane.0, -plane.1)].into_iter().find(|(normal, distance_m)| faces_all(normal, *distance_m))
         });
         let (normal, distance_m) = candidates.max_by_key(|(normal, distance_m)| on(normal, *distance_m))?;
         let plane = (0..FITS)

@@ -191,13 +191,14 @@ impl CameraModelSim {
         let (scale, centre) = ((1.0 / fx) as f32, cx as f32);
         let y = ((row as f64 - cy) / fy) as f32;
         let start = 1.0 + y * y;
-        for channel in line.chunks_exact_mut(self.camera.width as usize) {
-            for (column, light) in channel.iter_mut().enumerate() {
-                let x = (column as u32 as i32 as f32 - centre) * scale;
-                let square = start + x * x;
-                let kept = 1.0 - strength * (1.0 - 1.0 / (square * square));
-                *light *= if kept > 0.0 { kept } else { 0.0 };
-            }
+        let (red, rest) = line.split_at_mut(self.camera.width as usize);
+        let (green, blue) = rest.split_at_mut(self.camera.width as usize);
+        for (column, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
+            let x = (column as u32 as i32 as f32 - centre) * scale;
+            let square = start + x * x;
+            let kept = 1.0 - strength * (1.0 - 1.0 / (square * square));
+            let kept = if kept > 0.0 { kept } else { 0.0 };
+            (*red, *green, *blue) = (*red * kept, *green * kept, *blue * kept);
         }
     }
 }
