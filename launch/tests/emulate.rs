@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that cannot go on has failed its test")]
 
+use limn::nodes::KINDS;
+use limn::plan::Plan;
+use limn::planned::PlannedNode;
 use std::io::{BufRead as _, BufReader};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
@@ -34,6 +37,20 @@ fn it_says_where_it_is_and_leaves_no_link_behind() {
         assert!(interrupted.success() && child.wait().unwrap().success());
         assert!(!link.is_symlink(), "{device}");
     }
+}
+
+#[test]
+fn the_launch_file_for_it_differs_from_the_demos_in_its_tracker_alone() {
+    let load = |name: &str| Plan::load(&repository(name), &[], KINDS).unwrap();
+    let (demo, emulated) = (load("launch/demo.toml"), load("launch/emulated.toml"));
+    assert_eq!(emulated.warnings, demo.warnings);
+    let of = |plan: &Plan, tracker: &str| -> Vec<PlannedNode> {
+        // The recorder notes the whole launch file.
+        plan.nodes.iter().filter(|node| ![tracker, "record"].contains(&node.name.as_str())).cloned().collect()
+    };
+    assert_eq!(of(&demo, "tracker"), of(&emulated, "flock"));
+    let gives = |plan: &Plan, name: &str| plan.nodes.iter().find(|node| node.name == name).unwrap().gives.clone();
+    assert_eq!(gives(&demo, "tracker"), gives(&emulated, "flock"));
 }
 
 #[test]

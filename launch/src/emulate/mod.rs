@@ -26,10 +26,10 @@ use std::time::Duration;
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
-  limn emulate flock                                              its hand begins now
-  limn emulate flock --link /tmp/flock --follow emulated          its hand begins with each scan of the rig `emulated`:
-  limn up launch/emulated.toml                                    in another terminal; `e` ends the scan
-  limn emulate flock --units 3 --first-sensor 2                   two sensors behind an extended range controller
+  limn emulate flock                                            its hand begins now
+  limn emulate flock --link /tmp/limn-flock --follow emulated   its hand begins with each scan of the rig `emulated`:
+  limn up launch/emulated.toml                                  in another terminal; `b` begins a scan, `e` ends it
+  limn emulate flock --units 3 --first-sensor 2                 two sensors behind an extended range controller
   limn emulate polhemus --family patriot --cut-every 10 --cut-for 2 --bit-errors 500
 The driver's port is the path that is printed, or the link. Transmitter and world share origin and axes, z up: tell the
 Flock's driver hemisphere = \"lower\", the Polhemus's hemisphere = [0, 0, 1]; and scan_clock = true beside a simulated camera.";
