@@ -86,7 +86,7 @@ fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) {
     let bus = rig.rig.bus();
     let mut poses = bus.subscribe(&topic::pose("head"), 4096).unwrap();
     rig.scan(&bus);
-    let poses: Vec<Pose> = std::iter::from_fn(|| poses.next()).filter(|pose| !pose.header.is_end()).collect();
+    let poses: Vec<Pose> = std::iter::from_fn(|| poses.next()).filter(|pose| pose.quality != Quality::Lost).collect();
     drop(bus);
     let (status, said) = rig.end();
     assert!(status.success() && !said.contains("messages lost"), "{said}");

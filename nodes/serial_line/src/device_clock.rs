@@ -93,7 +93,12 @@ impl DeviceClock {
         let middle = if self.frame_nanos.is_some() { 0.0 } else { 0.5 * self.tick_nanos };
         let nanos = (line.at(self.device_nanos) + middle) as i64;
         self.last_nanos = nanos.max(self.last_nanos);
-        Some(Undelayed { nanos: self.last_nanos, removed_nanos: arrival_nanos - self.last_nanos, settled })
+        Some(Undelayed {
+            nanos: self.last_nanos,
+            removed_nanos: arrival_nanos - self.last_nanos,
+            settled,
+            held_up: false,
+        })
     }
 
     /// The jitter that was taken away from the arrivals of the last seconds, the coarseness of ticks included: root mean

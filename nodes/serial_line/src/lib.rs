@@ -72,6 +72,9 @@ pub use step::Step;
 pub use tally::Tally;
 pub use wire_time::wire_nanos;
 
+/// Why the pose of a record that was [`held_up`](Undelayed::held_up) is lost.
+pub const HELD_UP: &str = "it came in a burst behind a silence: when it was measured is not known";
+
 /// A moment of arrival without what delayed it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Undelayed {
@@ -81,4 +84,7 @@ pub struct Undelayed {
     pub removed_nanos: i64,
     /// True once enough was heard to be sure.
     pub settled: bool,
+    /// It waited somewhere, nobody knows for how long: it came right behind another, or behind a silence, while the clock
+    /// was not settled.
+    pub held_up: bool,
 }

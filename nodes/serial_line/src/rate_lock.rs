@@ -16,6 +16,8 @@ const SILENCE_PERIODS: f64 = 50.0;
 const LATE_STREAK: u32 = 16;
 const LATE_NANOS: f64 = 2.5e8;
 const LATE_PERIODS: f64 = 0.6;
+/// Who comes so soon behind another was held up with it.
+const HASTY_PERIODS: f64 = 0.3;
 /// A settled lock is better than this; who is earlier was counted wrongly.
 const EARLY_PERIODS: f64 = 0.15;
 
@@ -86,16 +88,20 @@ impl RateLock {
     pub fn undelay(&mut self, arrival_nanos: i64, missed: u32) -> Undelayed {
         let silence = self.last_arrival.map(|last| arrival_nanos.saturating_sub(last));
         let most = self.period.map_or(1e9, |period| period * SILENCE_PERIODS);
-        if silence.is_none_or(|silence| silence as f64 > most || silence < 0) {
+        let anew = silence.is_none_or(|silence| silence as f64 > most || silence < 0);
+        if anew {
             self.start_anew();
         }
+        let hasty = silence.zip(self.period).is_some_and(|(silence, period)| (silence as f64) < HASTY_PERIODS * period);
         self.last_arrival = Some(arrival_nanos);
         self.count(arrival_nanos as f64, missed);
         self.envelope.push(self.index as f64, arrival_nanos as f64);
         let settled = self.envelope.count() >= SETTLED_COUNT && self.envelope.duration() >= SETTLED_NANOS;
         let nanos = self.refit(settled).unwrap_or(arrival_nanos as f64) as i64;
         self.last_nanos = nanos.min(arrival_nanos).max(self.last_nanos.saturating_add(1));
-        Undelayed { nanos: self.last_nanos, removed_nanos: arrival_nanos - self.last_nanos, settled }
+        let removed_nanos = arrival_nanos - self.last_nanos;
+        // A host that stood still for long reads all at once what came meanwhile.
+        Undelayed { nanos: self.last_nanos, removed_nanos, settled, held_up: !settled && (anew || hasty) }
     }
 
     /// The period, in nanoseconds; `None` before two records.

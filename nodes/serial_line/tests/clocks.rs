@@ -90,6 +90,26 @@ fn a_silence_starts_the_count_anew_and_a_burst_does_not() {
 }
 
 #[test]
+fn behind_a_stop_that_looks_like_a_silence_a_stamp_is_true_or_known_not_to_be() {
+    let mut lock = RateLock::new(Some(1e7));
+    let mut faults = late(9, 3);
+    locked(&mut lock, 1e7, 500, &mut faults);
+    let (mut held_up, mut worst) = (0, 0.0_f64);
+    for k in 500..1000_i64 {
+        let truth = k * 10_000_000;
+        // The host was stopped for 900 ms.
+        let stopped = if k < 590 { 5_900_000_000 } else { 0 };
+        let undelayed = lock.undelay(faults.deliver(truth, &[0]).due_nanos.max(stopped), 0);
+        match undelayed.held_up {
+            true => held_up += 1,
+            false => worst = worst.max((undelayed.nanos - truth).abs() as f64 * MS),
+        }
+    }
+    assert!((90..110).contains(&held_up), "{held_up}");
+    assert!(worst < 4.0, "{worst} ms: no more than the line's own jitter");
+}
+
+#[test]
 fn a_devices_own_clock_is_told_in_ours_to_its_own_coarseness() {
     for (drift, zero) in [(0.0, 0u32), (80e-6, u32::MAX - 5000), (-60e-6, 77)] {
         let mut clock = DeviceClock::new(1e6, None);

@@ -5,7 +5,7 @@ use crate::hemisphere::HalfSpace;
 use crate::protocol::reading::{NoReading, QuaternionSense, Reading};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::Vector3;
-use serial_line::{PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
+use serial_line::{HELD_UP, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 /// A record as the port heard it.
@@ -131,8 +131,11 @@ fn judge(config: &Config, pose: &mut Pose, record: &Record, undelayed: Undelayed
     if !undelayed.settled {
         reasons.push("the clock is not settled yet".to_owned());
     }
+    if undelayed.held_up {
+        reasons.push(HELD_UP.to_owned());
+    }
     if !reasons.is_empty() {
-        pose.quality = Quality::Degraded;
+        pose.quality = if undelayed.held_up { Quality::Lost } else { Quality::Degraded };
         pose.reason = reasons.join("; ");
     }
 }

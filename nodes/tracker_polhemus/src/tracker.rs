@@ -3,7 +3,7 @@
 use crate::config::{Config, ConfigError, DataSheet};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use serial_line::{DeviceClock, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
+use serial_line::{DeviceClock, HELD_UP, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 const INCH_M: f64 = 0.0254;
@@ -99,6 +99,9 @@ impl PolhemusTracker {
         if undelayed.is_none() {
             pose.quality = Quality::Lost;
             reasons.push(format!("its time stamp, {} ms, does not follow", record.time_stamp_ms));
+        } else if undelayed.is_some_and(|undelayed| undelayed.held_up) {
+            pose.quality = Quality::Lost;
+            reasons.push(HELD_UP.to_owned());
         } else if !reasons.is_empty() {
             pose.quality = Quality::Degraded;
         }
