@@ -179,3 +179,18 @@ fn parts_with_different_pictures_and_colours_become_one() {
     };
     assert_eq!([colour(0), colour(1), colour(2)], [[255, 0, 0], [0, 255, 0], [0, 0, 255]]);
 }
+
+#[test]
+fn the_sigma_of_each_vertex_stands_in_the_ply_and_half_of_them_do_not() {
+    let (folder, path) = place("measured.ply");
+    let mesh = strip();
+    let sigma_m: Vec<f32> = (0..mesh.vertices.len()).map(|i| i as f32 * 1e-5).collect();
+    mesh::write_measured_ply(&path, &mesh, &sigma_m).unwrap();
+    assert_eq!(soup(&mesh::read(&path).unwrap().mesh), soup(&mesh));
+    // A vertex is a point with a sigma to whoever reads points.
+    let points = formats::cloud::read(&path).unwrap();
+    assert_eq!(points.iter().map(|point| point.sigma_m).collect::<Vec<_>>(), sigma_m);
+    let bare = folder.path().join("bare.ply");
+    mesh::write_measured_ply(&bare, &mesh, &sigma_m[1..]).unwrap();
+    assert!(formats::cloud::read(&bare).unwrap().iter().all(|point| point.sigma_m == 0.0));
+}

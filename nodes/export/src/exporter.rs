@@ -79,10 +79,10 @@ impl Exporter {
         if !mesh.header.is_end() {
             return Ok(Vec::new());
         }
-        let mesh = TriangleMesh::from(mesh);
+        let (mesh, sigma_m) = (TriangleMesh::from(mesh), &mesh.sigma_m);
         let (ply, stl) = (self.folder.join("mesh.ply"), self.folder.join("mesh.stl"));
         refuse_empty(&mesh, &ply)?;
-        formats::mesh::write_ply(&ply, &mesh)?;
+        formats::mesh::write_measured_ply(&ply, &mesh, sigma_m)?;
         formats::mesh::write_stl(&stl, &mesh)?;
         let holds = format!("{} triangles", mesh.triangles.len());
         Ok(vec![written(ply, holds.clone())?, written(stl, holds)?])

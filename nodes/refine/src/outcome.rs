@@ -34,6 +34,8 @@ const LEAST_MISFIT_M: f64 = 2e-4;
 const GOOD_TRACKER_M: f64 = 3e-4;
 /// A frame of which others saw less than this share may stand anywhere, and fit itself wherever it stands.
 const LEAST_HELD: f64 = 0.2;
+/// Unless little was seen twice at all.
+const MOSTLY_SEEN_TWICE: f64 = 0.5;
 /// From the handset to what it measures, about.
 const LEVER_M: f64 = 0.2;
 /// A frame whose points are known so many times worse than those of half of the frames is held by nothing ...
@@ -89,7 +91,8 @@ impl Bounds {
     fn new(config: &Config, problem: &Problem, judged: &Judgement, frames: &[RefinedFrame]) -> Self {
         let [position_m, rotation_rad] = problem.smoothed.white();
         let is_good = position_m.hypot(rotation_rad * LEVER_M) < GOOD_TRACKER_M;
-        let (misfit, held) = if is_good { (f64::INFINITY, 0.0) } else { (LEAST_MISFIT_M, LEAST_HELD) };
+        let misfit = if is_good { f64::INFINITY } else { LEAST_MISFIT_M };
+        let held = if is_good || judged.seen_twice < MOSTLY_SEEN_TWICE { 0.0 } else { LEAST_HELD };
         let residual = median(judged.frames.iter().map(|frame| frame.residual_m).filter(|r| r.is_finite()).collect());
         let sigma = median(frames.iter().map(|frame| frame.across_sigma_m).collect());
         Self {

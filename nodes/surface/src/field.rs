@@ -54,18 +54,24 @@ pub fn look(quadrics: &[Quadric], p: &Vector3<f32>) -> Option<Seen> {
     let in_reach: Vec<(&Quadric, Vector3<f32>)> = quadrics.iter().map(|q| (q, p - q.centre)).filter(reaches).collect();
     let remote = |(q, d): &(&Quadric, Vector3<f32>)| remoteness(q, d, d.norm_squared());
     let (nearest, _) = in_reach.iter().min_by(|a, b| remote(a).total_cmp(&remote(b)))?;
-    let (mut weights, mut distance, mut sigma, mut gradient) = (0.0, 0.0, 0.0, Vector3::zeros());
+    let (mut weights, mut distance, mut square, mut sigma, mut gradient) = (0.0, 0.0, 0.0, 0.0, Vector3::zeros());
     for (quadric, offset) in &in_reach {
         let falloff = falloff(offset.norm_squared(), quadric.reach_m.powi(-2));
         let weight = falloff * quadric.weight * agreement(nearest, quadric);
         weights += weight;
-        distance += weight * quadric.distance(offset);
+        let apart = quadric.distance(offset);
+        distance += weight * apart;
+        square += weight * apart * apart;
         sigma += weight * quadric.sigma_m;
         gradient += quadric.gradient(offset) * weight;
     }
     let slope = gradient.norm() / weights;
     let normal = gradient.try_normalize(0.0)?;
-    (weights > 0.0).then(|| Seen { distance_m: distance / weights / slope, normal, sigma_m: sigma / weights })
+    let mean = distance / weights;
+    // Where no quadric fits the shape, those around it disagree.
+    let disagreement = (square / weights - mean * mean).max(0.0).sqrt() / slope;
+    let sigma_m = (sigma / weights).hypot(disagreement);
+    (weights > 0.0).then_some(Seen { distance_m: mean / slope, normal, sigma_m })
 }
 
 /// Signed distances at the corners of a block's cells.

@@ -154,9 +154,12 @@ fn solve(rows: &[Row]) -> Option<(Vector6<f64>, Vector6<f64>)> {
     Some((inverse, cholesky.solve(&Vector6::from(right.map(f64::from)))))
 }
 
-/// Of the centre, in reaches: from the residuals, or from what the samples state where that is more. The errors that samples
-/// state are taken to move neighbours together, as those of a pose do: neighbours come from the same pictures, and what
-/// they have in common shows in no residual.
+/// So many neighbours err alike: speckle, the borders of colours and the edges of the lit line reach over several points.
+const ALIKE: f64 = 4.0;
+
+/// Of the centre, in reaches: from the residuals, and from what the samples state. The errors that samples state are taken to
+/// move neighbours together, as those of a pose do: neighbours come from the same pictures, and what they have in common
+/// shows in no residual.
 fn sigma(rows: &[Row], inverse: &Vector6<f64>, solution: &Vector6<f64>) -> f32 {
     let inner = |basis: &[f32; 6], c: &Vector6<f64>| (0..6).map(|k| f64::from(basis[k]) * c[k]).sum::<f64>();
     let (mut influence, mut stated, mut residual, mut weight) = (0.0, 0.0, 0.0, 0.0);
@@ -169,5 +172,5 @@ fn sigma(rows: &[Row], inverse: &Vector6<f64>, solution: &Vector6<f64>) -> f32 {
         weight += w;
     }
     let free = rows.len() as f64 / (rows.len() as f64 - 6.0);
-    (influence * free * residual / weight).max(stated * stated).sqrt() as f32
+    (ALIKE * influence * free * residual / weight + stated * stated).sqrt() as f32
 }

@@ -15,7 +15,7 @@ mod stl;
 mod write;
 mod write_glb;
 
-pub use write::{write_obj, write_ply, write_stl};
+pub use write::{write_measured_ply, write_obj, write_ply, write_stl};
 pub use write_glb::write_glb;
 
 use crate::{FormatError, Reason};

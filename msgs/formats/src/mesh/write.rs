@@ -12,8 +12,15 @@ const UNITS: &str = "limn: metres, z up";
 
 /// Writes a surface with its normals and vertex colours, when it has them.
 pub fn write_ply(path: &Path, mesh: &TriangleMesh) -> Result<(), FormatError> {
+    write_measured_ply(path, mesh, &[])
+}
+
+/// The same, with one standard deviation of each vertex along its normal, in metres, as `sigma_m`; none when there is not one
+/// for every vertex.
+pub fn write_measured_ply(path: &Path, mesh: &TriangleMesh, sigma_m: &[f32]) -> Result<(), FormatError> {
     mesh.check().map_err(|e| Reason::from(e).of(path))?;
-    write_whole(path, |out| Ok(ply(out, mesh)?))
+    let sigma_m = if sigma_m.len() == mesh.vertices.len() { sigma_m } else { &[] };
+    write_whole(path, |out| Ok(ply(out, mesh, sigma_m)?))
 }
 
 /// Writes the bare triangles, binary.
@@ -40,7 +47,7 @@ pub fn write_obj(path: &Path, mesh: &TriangleMesh, texture: Option<&RgbImage>) -
     write_whole(path, |out| Ok(obj(out, mesh, texture.map(|_| name.as_str()))?))
 }
 
-fn ply(out: &mut impl Write, mesh: &TriangleMesh) -> io::Result<()> {
+fn ply(out: &mut impl Write, mesh: &TriangleMesh, sigma_m: &[f32]) -> io::Result<()> {
     let mut ply = PlyWriter::begin(out, &[UNITS])?;
     ply.element("vertex", mesh.vertices.len())?;
     ply.properties("float", &["x", "y", "z"])?;
@@ -50,6 +57,9 @@ fn ply(out: &mut impl Write, mesh: &TriangleMesh) -> io::Result<()> {
     if !mesh.colours.is_empty() {
         ply.properties("uchar", &["red", "green", "blue"])?;
     }
+    if !sigma_m.is_empty() {
+        ply.properties("float", &["sigma_m"])?;
+    }
     ply.element("face", mesh.triangles.len())?;
     ply.properties("list uchar uint", &["vertex_indices"])?;
     ply.end_header()?;
@@ -57,6 +67,7 @@ fn ply(out: &mut impl Write, mesh: &TriangleMesh) -> io::Result<()> {
         ply.values(vertex.coords.as_slice())?;
         ply.values(mesh.normals.get(i).map_or(&[], |n| n.as_slice()))?;
         ply.values(mesh.colours.get(i).map_or(&[], |c| c.as_slice()))?;
+        ply.values(sigma_m.get(i..=i).unwrap_or_default())?;
     }
     for triangle in &mesh.triangles {
         ply.values(&[3_u8])?;
