@@ -28,14 +28,17 @@ const LIBERTY: Tracker = Tracker {
     seconds: 8.0,
 };
 
-/// How far the surface of one model is from that of the other: the median in millimetres, and which share of it is within
-/// 0.25 mm.
-fn apart(model: &Path, other: &Path) -> (f64, f64) {
-    let meshes = [model, other].map(|out| out.join("mesh.ply"));
-    let output = succeed(limn().arg("compare").args(meshes).arg("--json"));
-    let comparison: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(number(&comparison, "/truth_to_model/within/0/distance_mm"), 0.25);
-    (number(&comparison, "/model_to_truth/median_mm"), number(&comparison, "/truth_to_model/within/0/share"))
+/// How far the surface that was played is from the one that is known: the median in millimetres, and which share of it is
+/// within 0.25 mm. Where a busy machine let the tracker measure nothing, it is not.
+fn apart(played: &Path, known: &Path) -> (f64, f64) {
+    let compare = |model: &Path, truth: &Path| -> serde_json::Value {
+        let meshes = [model, truth].map(|out| out.join("mesh.ply"));
+        serde_json::from_slice(&succeed(limn().arg("compare").args(meshes).arg("--json")).stdout).unwrap()
+    };
+    // Shares are told of the truth alone, so each is the truth once.
+    let (there, back) = (compare(played, known), compare(known, played));
+    assert_eq!(number(&back, "/truth_to_model/within/0/distance_mm"), 0.25);
+    (number(&there, "/model_to_truth/median_mm"), number(&back, "/truth_to_model/within/0/share"))
 }
 
 /// From the receiver to the surface.
@@ -99,13 +102,14 @@ fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) {
     println!("{}: half of the positions within {median_mm:.4} mm; sigma {sigma:.4} mm", tracker.kind);
     assert!(median_mm < sigma, "half of the positions are wrong by more than {median_mm} mm; sigma {sigma} mm");
     // Two surfaces differ by what the poses of both do, along one axis of three, turned or moved: half of a normal
-    // distribution lies within 0.67 sigma. Nor is the surface farther off than the poses that it was made with.
+    // distribution lies within 0.67 sigma. Nor is the surface farther off than the poses that it was made with, but where
+    // one has closed a hole and the other has not: a twentieth of it.
     let turn = NOISE_DEG.to_radians() * LEVER_MM;
     let sigma = ((sigma.powi(2) + NOISE_MM.powi(2) + 2.0 * turn.powi(2)) / 3.0).sqrt();
     let (median, share) = apart(&played, &known);
     println!("the models are {median:.4} mm apart in the median; sigma {sigma:.4} mm");
     println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are");
-    assert!(median < 0.67 * sigma && share > near, "{median} mm, {share}; sigma {sigma} mm, {near}\n{said}");
+    assert!(median < 0.67 * sigma && share > near - 0.05, "{median} mm, {share}; sigma {sigma} mm, {near}\n{said}");
 }
 
 #[test]
