@@ -250,13 +250,14 @@ pub const KINDS: &[Kind] = &[
         // A viewer that is stuck slows nobody, and one that dies ends nothing.
         paces: false,
         required: false,
-        inputs: &["camera", "rig"],
+        inputs: &["camera", "rig", "world"],
         takes: |node| {
-            let (camera, rig) = (node.of("camera"), node.of("rig"));
+            let (camera, rig, world) = (node.of("camera"), node.of("rig"), node.of("world"));
             let pictures = [topic::frame(camera).key, topic::colour(camera).key, topic::stripe(camera).key];
             let placed = [topic::scan(camera).key, topic::trajectory(camera).key, topic::calibration(rig).key];
+            let refined = [topic::trajectory(world).key, topic::refinement(world).key];
             let made = [topic::cloud().key, topic::mesh().key, topic::textured().key];
-            pictures.into_iter().chain(placed).chain(made).collect()
+            pictures.into_iter().chain(placed).chain(refined).chain(made).collect()
         },
         defaults: defaults::<view::Config>,
         check: |config| check(config, view::Config::check),

@@ -6,7 +6,7 @@ use rerun::blueprint::{
     TimeSeriesView, Vertical,
 };
 
-/// The thing on the left; the camera, the plots and the log on the right.
+/// The thing on the left, and behind it how the hand went; the camera, the plots and the log on the right.
 pub(crate) fn blueprint() -> Blueprint {
     let plots = Tabs::new([
         TimeSeriesView::new("Latency, ms").with_origin("plots/latency_ms").into(),
@@ -19,7 +19,10 @@ pub(crate) fn blueprint() -> Blueprint {
         TextLogView::new("Log").with_origin("log").into(),
     ])
     .with_row_shares([3.0, 2.0, 1.5]);
-    let world = Spatial3DView::new("The thing").with_origin("world");
+    let world = Tabs::new([
+        Spatial3DView::new("The thing").with_origin("world").into(),
+        Spatial3DView::new("The hand's way, by tracker and refined").with_origin("way").into(),
+    ]);
     Blueprint::new(Horizontal::new([world.into(), right.into()]).with_column_shares([3.0, 2.0]))
         .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
         .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))

@@ -1,6 +1,7 @@
 //! The eyes of the operator: every stream of a rig, live, in Rerun's web page, which is served from within.
 //!
-//! In: frame, stripe, trajectory, scan, cloud, mesh, model, health and log. Out: nothing on the bus; two servers on
+//! In: frame, stripe, trajectory (the tracker's and the refined one), what refinement rests on, scan, cloud, mesh, model, health
+//! and log. Out: nothing on the bus; two servers on
 //! loopback, one for the page and one for its data. Nobody waits for this node: it takes the newest picture, thins what
 //! comes too often ([`Config`]), and its end changes nothing for the others.
 //!
@@ -19,5 +20,7 @@ pub mod picture;
 mod serve;
 #[cfg(feature = "node")]
 mod show;
+#[cfg(feature = "node")]
+mod ways;
 
 pub use config::{Config, ConfigError};

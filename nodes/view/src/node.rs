@@ -1,18 +1,21 @@
 //! The wiring: takes the newest of everything and shows it.
 
 use crate::cloud::ChunkedCloud;
+use crate::ways::Ways;
 use crate::{Config, picture, serve, show};
 use kit::{Input, Node};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 use wire::topic;
-use wire::{Cloud, Frame, Health, LogLine, Mesh, Model, Phase, Scan, Stripe, Trajectory};
+use wire::{Cloud, Frame, Health, LogLine, Mesh, Model, Phase, Refinement, Scan, Stripe, Trajectory};
 
 struct Inputs {
     frames: Input<Frame>,
     colours: Input<Frame>,
     stripes: Input<Stripe>,
     trajectories: Input<Trajectory>,
+    refined_ways: Input<Trajectory>,
+    refinements: Input<Refinement>,
     scans: Input<Scan>,
     clouds: Input<Cloud>,
     meshes: Input<Mesh>,
@@ -22,12 +25,14 @@ struct Inputs {
 }
 
 impl Inputs {
-    fn open(node: &mut Node, camera: &str) -> anyhow::Result<Self> {
+    fn open(node: &mut Node, camera: &str, world: &str) -> anyhow::Result<Self> {
         Ok(Self {
             frames: node.glimpse(&topic::frame(camera))?,
             colours: node.glimpse(&topic::colour(camera))?,
             stripes: node.glimpse(&topic::stripe(camera))?,
             trajectories: node.glimpse(&topic::trajectory(camera))?,
+            refined_ways: node.input(&topic::trajectory(world), 4096)?,
+            refinements: node.input(&topic::refinement(world), 16)?,
             scans: node.glimpse(&topic::scan(camera))?,
             clouds: node.input(&topic::cloud(), 4096)?,
             meshes: node.glimpse(&topic::mesh())?,
@@ -62,8 +67,8 @@ impl Rate {
 pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
     config.check()?;
     let camera = node.spec().source_of("camera").to_owned();
-    let rig = node.spec().source_of("rig").to_owned();
-    let mut inputs = Inputs::open(&mut node, &camera)?;
+    let [rig, world] = ["rig", "world"].map(|input| node.spec().source_of(input).to_owned());
+    let mut inputs = Inputs::open(&mut node, &camera, &world)?;
     let served = serve::start(&config)?;
     let rec = &served.recording;
     show::world(rec)?;
@@ -75,10 +80,17 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
 
     let (mut pictures, mut surfaces) = (Rate::new(config.pictures_per_s), Rate::new(config.surfaces_per_s));
     let (mut cloud, mut trail, mut painted) = (ChunkedCloud::default(), Vec::new(), false);
+    let mut ways = Ways::default();
     let mut reports: BTreeMap<String, (Instant, Health)> = BTreeMap::new();
     while node.wait() {
         if pictures.admits() {
-            fast_part(&mut inputs, rec, &config, shrunk_by, &mut trail)?;
+            fast_part(&mut inputs, rec, &config, shrunk_by, &mut trail, &mut ways)?;
+        }
+        while let Some(way) = inputs.refined_ways.next() {
+            ways.refined(&way);
+        }
+        if let Some(evidence) = inputs.refinements.newest() {
+            ways.show(rec, &evidence)?;
         }
         while let Some(changes) = inputs.clouds.next() {
             painted &= changes.header.phase == Phase::End;
@@ -113,10 +125,12 @@ fn fast_part(
     config: &Config,
     shrunk_by: u32,
     trail: &mut Vec<[f32; 3]>,
+    ways: &mut Ways,
 ) -> anyhow::Result<()> {
     if let Some(trajectory) = inputs.trajectories.newest() {
         show::at(rec, &trajectory.header);
         show::trajectory(rec, &trajectory, trail)?;
+        ways.tracker(&trajectory);
     }
     for picture in [inputs.colours.newest(), inputs.frames.newest()].into_iter().flatten() {
         if let Some(picture) = picture::shrink(&picture, config.picture_width_px) {
