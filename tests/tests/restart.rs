@@ -56,6 +56,11 @@ fn of_register() {
 }
 
 #[test]
+fn of_refine() {
+    model_without("refine", "refine/refined");
+}
+
+#[test]
 fn of_cluster() {
     model_without("cluster", "cluster/model");
 }

@@ -9,11 +9,6 @@ use wire::{Header, Pose, topic};
 /// At a fast pace nothing comes in its time: a receiver that is silent is told from a busy machine by waiting longer.
 const FAST_PATIENCE: Duration = Duration::from_secs(5);
 
-/// All has come when nothing has for so many naps.
-const QUIET_NAPS: u32 = 3;
-/// In real time something always comes.
-const LONGEST_CATCH_UP: Duration = Duration::from_secs(1);
-
 /// Fuses the receivers of a handset until it is told to stop.
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
@@ -29,9 +24,6 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let patience = if node.spec().pace == Pace::Fast { FAST_PATIENCE } else { most_wait };
     let mut fuse = Fuse::new(config)?;
     let mut silences = Silences::new(names, patience);
-    if node.spec().next_seq.is_some() {
-        catch_up(&mut node, &mut inputs, &mut fuse);
-    }
     node.ready()?;
     while node.wait() {
         hear(&mut inputs, &mut fuse);
@@ -46,26 +38,12 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     node.close()
 }
 
-/// A node that is started again first hears what its inputs have sent so far. As soon as it is ready its sources go on, and
-/// a message that overtakes the ones before it shuts them out: zenoh-ext (1.10.2) asks for them twice, and forgets them
-/// when something new comes between the two answers.
-fn catch_up(node: &mut Node, inputs: &mut [Input<Pose>], fuse: &mut Fuse) {
-    let (started, mut quiet) = (Instant::now(), 0);
-    while quiet < QUIET_NAPS && started.elapsed() < LONGEST_CATCH_UP && node.wait() {
-        quiet = if hear(inputs, fuse) { 0 } else { quiet + 1 };
-    }
-}
-
-/// True when anything has come.
-fn hear(inputs: &mut [Input<Pose>], fuse: &mut Fuse) -> bool {
-    let mut heard = false;
+fn hear(inputs: &mut [Input<Pose>], fuse: &mut Fuse) {
     for (receiver, input) in inputs.iter_mut().enumerate() {
         while let Some(pose) = input.next() {
             fuse.pose(receiver, &pose);
-            heard = true;
         }
     }
-    heard
 }
 
 fn send(node: &mut Node, fuse: &mut Fuse, poses: &mut Output<Pose>) -> anyhow::Result<()> {
