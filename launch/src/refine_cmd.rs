@@ -7,7 +7,7 @@ use crate::plan::Plan;
 use crate::recorded::Recorded;
 use crate::run::before::{self, config};
 use anyhow::{Context as _, Result};
-use geometry::{METRES_PER_MM, TimedPose, TrajectoryBuffer};
+use geometry::{METRES_PER_MM, TimedPose, TrajectoryBuffer, TriangleMesh};
 use refine::{Evidence, Refinement, Refiner};
 use register::Register;
 use replay::Source;
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripe::StripeDetector;
 use triangulate::Triangulator;
-use wire::{Calibration, Frame, Pose, Profile, Scan, Stripe};
+use wire::{Calibration, Frame, Mesh, Pose, Profile, Scan, Stripe};
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
@@ -54,17 +54,21 @@ pub fn run(args: &Args) -> Result<()> {
     let refinement = bench.refiner.finish()?;
     let took_s = started.elapsed().as_secs_f64();
     let scans: Vec<Scan> = refinement.scans().collect();
-    formats::mesh::write_ply(&args.out.join("mesh.ply"), &before::surface(&plan, &scans)?)?;
+    save(&args.out.join("mesh.ply"), &before::surface(&plan, &scans)?)?;
     write(&args.out.join("trajectory.csv"), &way(&refinement.trajectory))?;
     write(&args.out.join("evidence.json"), &(serde_json::to_string_pretty(&refinement.evidence)? + "\n"))?;
     let mut text = told(&refinement.evidence, took_s);
     if args.compare {
         let placed = bench.placed();
-        formats::mesh::write_ply(&args.out.join("before.ply"), &before::surface(&plan, &placed)?)?;
+        save(&args.out.join("before.ply"), &before::surface(&plan, &placed)?)?;
         text.push_str(&compared(&placed, &refinement));
     }
     let _ = writeln!(text, "\n  {}", args.out.display());
     print(&text)
+}
+
+fn save(path: &Path, mesh: &Mesh) -> Result<(), formats::FormatError> {
+    formats::mesh::write_measured_ply(path, &TriangleMesh::from(mesh), &mesh.sigma_m)
 }
 
 /// The stages up to refinement, as far as a recording needs them.

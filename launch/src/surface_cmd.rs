@@ -41,14 +41,15 @@ pub fn run(args: &Args) -> Result<()> {
     let (count, started) = (points.len(), Instant::now());
     let header = Header { phase: Phase::End, ..Header::default() };
     surfer.update(&Cloud { header, extent: Extent::Whole, points: points.into(), refused: Vec::new() });
-    let mesh = TriangleMesh::from(&surfer.final_mesh());
+    let measured = surfer.final_mesh();
+    let mesh = TriangleMesh::from(&measured);
     for refusal in surfer.refused() {
         tracing::warn!("{} x {}", refusal.count, refusal.reason);
     }
     if mesh.triangles.is_empty() {
         bail!("no surface: {count} points in {} are too few or too far apart", args.cloud.display());
     }
-    write(&args.output, &mesh)?;
+    write(&args.output, &mesh, &measured.sigma_m)?;
     let (triangles, seconds) = (mesh.triangles.len(), started.elapsed().as_secs_f64());
     tracing::info!("{count} points, {triangles} triangles in {}, {seconds:.2} s", args.output.display());
     Ok(())
@@ -60,15 +61,15 @@ fn scale(point: &mut CloudPoint, metres: f32) {
     point.spread_m *= metres;
 }
 
-type Write = fn(&Path, &TriangleMesh) -> Result<(), formats::FormatError>;
+type Write = fn(&Path, &TriangleMesh, &[f32]) -> Result<(), formats::FormatError>;
 
 /// Told before the work begins, not after it.
 fn writer(path: &Path) -> Result<Write> {
     Ok(match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
-        "ply" => formats::mesh::write_ply,
-        "stl" => formats::mesh::write_stl,
-        "obj" => |path, mesh| formats::mesh::write_obj(path, mesh, None),
-        "glb" => |path, mesh| formats::mesh::write_glb(path, mesh, None),
+        "ply" => formats::mesh::write_measured_ply,
+        "stl" => |path, mesh, _| formats::mesh::write_stl(path, mesh),
+        "obj" => |path, mesh, _| formats::mesh::write_obj(path, mesh, None),
+        "glb" => |path, mesh, _| formats::mesh::write_glb(path, mesh, None),
         other => bail!("{}: cannot write {other:?}: say ply, stl, obj or glb", path.display()),
     })
 }

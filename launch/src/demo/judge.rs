@@ -103,7 +103,8 @@ impl Bench {
     fn refinement(&self, plan: &Plan, harvest: &Harvest, report: &mut Report) -> Option<LoadedMesh> {
         let refinement = harvest.refinement.as_ref()?;
         // Without it there may be nothing that could be called a surface, which is no failure.
-        let without = before::surface(plan, &harvest.placed).and_then(|mut mesh| {
+        let without = before::surface(plan, &harvest.placed).and_then(|mesh| {
+            let mut mesh = TriangleMesh::from(&mesh);
             let (_, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?;
             Ok((mesh, aligned))
         });

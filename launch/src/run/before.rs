@@ -3,18 +3,17 @@
 use crate::plan::Plan;
 use anyhow::{Context as _, Result};
 use cluster::BallClusterer;
-use geometry::TriangleMesh;
 use serde::de::DeserializeOwned;
 use surface::Surfer;
-use wire::Scan;
+use wire::{Mesh, Scan};
 
 /// The surface through these scans, with the plan's own settings for both steps.
-pub fn surface(plan: &Plan, scans: &[Scan]) -> Result<TriangleMesh> {
+pub fn surface(plan: &Plan, scans: &[Scan]) -> Result<Mesh> {
     let mut clusterer = BallClusterer::new(config(plan, "cluster")?)?;
     scans.iter().for_each(|scan| clusterer.insert(scan));
     let mut surfer = Surfer::new(config(plan, "surface")?)?;
     surfer.update(&clusterer.whole());
-    Ok(TriangleMesh::from(&surfer.final_mesh()))
+    Ok(surfer.final_mesh())
 }
 
 /// The effective configuration of the plan's only node of a kind.
