@@ -86,11 +86,6 @@ impl Problem<'_> {
 }
 
 impl FramePose {
-    /// R x + p, relative to the solver's origin.
-    pub fn place(&self, position_m: &[f32; 3]) -> Vector3<f32> {
-        self.camera_rotation * Vector3::from(*position_m) + self.camera_origin
-    }
-
     /// d(n . x) / d(dt, dr) for a point `q` of the handset: [R_base^T n, J_r(dr)^T (q x R^T n)]; exact for any dr,
     /// since R_base exp(dr + d) = R exp(J_r(dr) d) (Sola et al. 2018, equation 67).
     pub fn jacobian(&self, normal: &Vector3<f32>, q: &Vector3<f32>) -> [f32; 6] {

@@ -21,16 +21,9 @@ const PARALLEL: f64 = 0.866;
 
 /// Looks at each surfel's stripes, laid into its tangent plane.
 pub(crate) fn look(problem: &Problem, poses: &[FramePose], patches: &[Patch]) -> Strokes {
-    let stripes: Vec<Vector3<f32>> = problem
-        .frames
-        .iter()
-        .zip(poses)
-        .map(|(placed, pose)| {
-            let points = &problem.gathered.frames[placed.frame].points;
-            let ends = points.first().zip(points.last());
-            ends.map_or_else(Vector3::zeros, |(a, b)| pose.place(&b.position_m) - pose.place(&a.position_m))
-        })
-        .collect();
+    let sheet = sheet_normal(problem);
+    let sheets: Vec<Vector3<f32>> = poses.iter().map(|pose| pose.camera_rotation * sheet).collect();
+    let mut spread = nalgebra::Matrix3::zeros();
     let (mut crossing, mut all) = (0usize, 0usize);
     for patch in patches {
         for (members, middle) in patch.surfels().zip(&patch.middles) {
@@ -38,7 +31,10 @@ pub(crate) fn look(problem: &Problem, poses: &[FramePose], patches: &[Patch]) ->
             let first = if n.x.abs() < 0.7 { Vector3::x() } else { Vector3::y() };
             let (u, v) = (n.cross(&first).normalize(), n.cross(&n.cross(&first)).normalize());
             let doubled = members.iter().filter_map(|member| {
-                let along = stripes[member.frame as usize];
+                // A stripe runs where the sheet meets the surface.
+                let along = sheets[member.frame as usize].cross(&n);
+                let wide = along.cast::<f64>();
+                spread += wide * wide.transpose();
                 let (x, y) = (u.dot(&along), v.dot(&along));
                 let square = x * x + y * y;
                 (square > 1e-8).then(|| [(x * x - y * y) / square, 2.0 * x * y / square])
@@ -50,15 +46,30 @@ pub(crate) fn look(problem: &Problem, poses: &[FramePose], patches: &[Patch]) ->
             }
         }
     }
-    Strokes { crossing: crossing as f64 / all.max(1) as f64, along: main_axis(&stripes) }
+    Strokes { crossing: crossing as f64 / all.max(1) as f64, along: main_axis(spread) }
 }
 
-/// The direction that most stripes have, whichever way they run.
-fn main_axis(stripes: &[Vector3<f32>]) -> Vector3<f64> {
-    let unit = stripes.iter().filter_map(|s| s.cast::<f64>().try_normalize(1e-6));
-    let spread = unit.fold(nalgebra::Matrix3::zeros(), |sum, s| sum + s * s.transpose());
+/// The direction that most stripes have, whichever way they run: of the sum of their squares.
+fn main_axis(spread: nalgebra::Matrix3<f64>) -> Vector3<f64> {
     let eigen = spread.symmetric_eigen();
     eigen.eigenvectors.column(eigen.eigenvalues.imax()).into()
+}
+
+/// So many points tell where the sheet is.
+const SHEET_POINTS: usize = 20_000;
+
+/// Of the laser's sheet, in the frame of the camera: all points lie in it.
+fn sheet_normal(problem: &Problem) -> Vector3<f32> {
+    let frames = problem.frames.iter().map(|placed| &problem.gathered.frames[placed.frame].points);
+    let all: usize = frames.clone().map(|points| points.len()).sum();
+    let places = frames.flat_map(|points| points.iter()).step_by((all / SHEET_POINTS).max(1));
+    let places: Vec<Vector3<f64>> = places.map(|point| Vector3::from(point.position_m).cast()).collect();
+    let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
+    let spread = places.iter().fold(nalgebra::Matrix3::zeros(), |sum: nalgebra::Matrix3<f64>, place| {
+        sum + (place - middle) * (place - middle).transpose()
+    });
+    let eigen = spread.symmetric_eigen();
+    eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned().cast()
 }
 
 /// Which of the six motions of the whole scan against itself the surface does not hold.
