@@ -8,10 +8,12 @@
 //! pass beside or behind the camera.
 
 mod lens;
+mod run;
 
 use crate::{Camera, TriangleMesh};
 use lens::{Corner, Lens, NOWHERE, SUBPIXEL, SUBPIXEL_BITS};
 use nalgebra::{Isometry3, Point3};
+use run::{LANES, Run};
 
 /// No triangle at a pixel.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -136,6 +138,9 @@ impl VisibilityBuffer {
         if doubled_area < 0 {
             (b, c, doubled_area) = (c, b, -doubled_area);
         }
+        // Whole groups of pixels: those beside the triangle's box are not in it either.
+        let first_u = first_u & !(LANES as i32 - 1);
+        let columns = ((last_u - first_u) as usize + 1).next_multiple_of(LANES).min(self.width - first_u as usize);
         let (u, v) = (first_u << SUBPIXEL_BITS, first_v << SUBPIXEL_BITS);
         let mut row_weights = [cross(&b, &c, u, v), cross(&c, &a, u, v), cross(&a, &b, u, v)];
         let step_u = [b.v - c.v, c.v - a.v, a.v - b.v].map(|d| d << SUBPIXEL_BITS);
@@ -146,19 +151,11 @@ impl VisibilityBuffer {
         let along = |weights: [i32; 3]| to_b * weights[1] as f32 + to_c * weights[2] as f32;
         let (depth_step_u, depth_step_v) = (along(step_u), along(step_v));
         let mut row_depth = a.inverse_depth + along(row_weights);
-        let columns = (last_u - first_u) as usize + 1;
         let mut start = first_v as usize * self.width + first_u as usize;
         for _ in first_v..=last_v {
-            let ([mut wa, mut wb, mut wc], mut inverse) = (row_weights, row_depth);
             let depths = &mut self.inverse_depth[start..start + columns];
             let ids = &mut self.triangle[start..start + columns];
-            for (depth, triangle) in depths.iter_mut().zip(ids) {
-                if (wa | wb | wc) >= 0 && inverse > *depth {
-                    (*depth, *triangle) = (inverse, id);
-                }
-                (wa, wb, wc) = (wa + step_u[0], wb + step_u[1], wc + step_u[2]);
-                inverse += depth_step_u;
-            }
+            Run::new(row_weights, step_u, row_depth, depth_step_u).fill(id, depths, ids);
             row_weights = std::array::from_fn(|i| row_weights[i] + step_v[i]);
             row_depth += depth_step_v;
             start += self.width;

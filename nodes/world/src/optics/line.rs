@@ -154,7 +154,7 @@ fn albedo(stage: &Stage, triangle: u32, p: &Point3<f64>, source: &Point3<f64>, e
     let weights = barycentric(&stage.mesh.corners(index), &p.cast());
     let finish = stage.finish_of(index);
     let red = match &finish.texture {
-        Some(picture) => picture.sample(texture::blend(corners.map(|i| stage.mesh.uv[i]), weights))[0],
+        Some(picture) => picture.sample(texture::blend(corners.map(|i| stage.mesh.uv[i]), weights)).to_array()[0],
         None => (0..3).map(|i| weights[i] * stage.albedo[corners[i]][0]).sum(),
     };
     if finish.specular <= 0.0 {

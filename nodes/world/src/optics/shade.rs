@@ -5,6 +5,7 @@ use super::stage::Stage;
 use super::texture::LinearTexture;
 use geometry::{NO_TRIANGLE, VisibilityBuffer};
 use nalgebra::{Point3, Vector3};
+use wide::f32x4;
 
 /// What lights a picture, beside the laser and the room.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +22,7 @@ pub(super) const LAMP_DISTANCE_M: f32 = 0.2;
 const NOTHING: f32 = 0.02;
 
 /// Pixels from one look at a texture to the next, at most.
-const FARTHEST_LOOK: f32 = 4.0;
+const FARTHEST_LOOK: usize = 4;
 
 /// Four values that are linear over a triangle's pixels: red, green, blue; or, under a texture, light, gloss, u and v.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +75,10 @@ impl Patches {
         let [a, b, c, d] = patch.start(column, row);
         match &stage.finish_of(triangle as usize).texture {
             None => [a, b, c],
-            Some(picture) => picture.sample([c, d]).map(|albedo| albedo * a + b),
+            Some(picture) => {
+                let [red, green, blue, _] = (picture.sample([c, d]) * a + f32x4::splat(b)).to_array();
+                [red, green, blue]
+            }
         }
     }
 
@@ -120,20 +124,27 @@ impl Patch {
 
     /// The texture is looked up once in each of its own pixels where those are the larger ones, up to every
     /// [`FARTHEST_LOOK`], and runs evenly in between.
-    fn fill_textured(&self, column: usize, row: usize, picture: &LinearTexture, [red, green, blue]: [&mut [f32]; 3]) {
+    fn fill_textured(&self, column: usize, row: usize, picture: &LinearTexture, mut out: [&mut [f32]; 3]) {
         let start = self.start(column, row);
-        let at = |i: usize| -> [f32; 4] { std::array::from_fn(|k| start[k] + self.per_u[k] * i as f32) };
-        let look = |i: usize| picture.sample([at(i)[2], at(i)[3]]);
-        let apart = (1.0 / picture.pixels_along([self.per_u[2], self.per_u[3]])).clamp(1.0, FARTHEST_LOOK) as usize;
+        let at = |k: usize, i: usize| start[k] + self.per_u[k] * i as f32;
+        let look = |i: usize| picture.sample([at(2, i), at(3, i)]);
+        let apart = (1.0 / picture.pixels_along([self.per_u[2], self.per_u[3]])).clamp(1.0, FARTHEST_LOOK as f32);
+        let (apart, length) = (apart as usize, out[0].len());
         let (mut first, mut from) = (0, look(0));
-        while first < red.len() {
-            let count = apart.min(red.len() - first);
+        let lanes = f32x4::new([0.0, 1.0, 2.0, 3.0]);
+        let [light_step, gloss_step] = [0, 1].map(|k| lanes * self.per_u[k]);
+        while first < length {
+            let count = apart.min(length - first);
             let to = look(first + count);
-            let step: [f32; 3] = std::array::from_fn(|k| (to[k] - from[k]) / count as f32);
-            for i in 0..count {
-                let [light, gloss, ..] = at(first + i);
-                let shown = |k: usize| (from[k] + step[k] * i as f32) * light + gloss;
-                (red[first + i], green[first + i], blue[first + i]) = (shown(0), shown(1), shown(2));
+            let (seen, step) = (from.to_array(), ((to - from) * (1.0 / count as f32)).to_array());
+            let (light, gloss) = (light_step + f32x4::splat(at(0, first)), gloss_step + f32x4::splat(at(1, first)));
+            for (k, out) in out.iter_mut().enumerate() {
+                let shown = (lanes * step[k] + f32x4::splat(seen[k])) * light + gloss;
+                let out = &mut out[first..first + count];
+                match out.first_chunk_mut::<FARTHEST_LOOK>() {
+                    Some(all) => *all = shown.to_array(),
+                    None => out.iter_mut().zip(shown.to_array()).for_each(|(out, value)| *out = value),
+                }
             }
             (first, from) = (first + count, to);
         }

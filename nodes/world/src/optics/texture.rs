@@ -2,6 +2,7 @@
 
 use super::stage::linear;
 use crate::Texture;
+use wide::{f32x4, i32x4};
 
 /// A texture in linear light: red, green, blue and nothing, 65535 is white.
 #[derive(Debug, Clone)]
@@ -24,23 +25,32 @@ impl LinearTexture {
         (u * self.width as f32).abs().max((v * self.height as f32).abs())
     }
 
-    /// Bilinear between the four pixels around `uv`; beyond its edges the texture repeats.
+    /// Bilinear between the four pixels around `uv`: red, green, blue and nothing. Beyond its edges the texture repeats.
     #[inline]
-    pub fn sample(&self, uv: [f32; 2]) -> [f32; 3] {
+    pub fn sample(&self, uv: [f32; 2]) -> f32x4 {
         let place = [uv[0] * self.width as f32 - 0.5, uv[1] * self.height as f32 - 0.5];
         let [column, row] = [floor(place[0]), floor(place[1])];
         let [u, v] = [place[0] - column as f32, place[1] - row as f32];
-        let [left, right] = [wrap(column, self.width), wrap(column.wrapping_add(1), self.width)];
-        let [above, below] = [wrap(row, self.height), wrap(row.wrapping_add(1), self.height)];
-        let [above, below] = [above * self.width, below * self.width];
-        let at = |pixel: usize| self.pixels[pixel].map(f32::from);
-        let (a, b, c, d) = (at(above + left), at(above + right), at(below + left), at(below + right));
-        let mut colour = [0.0; 4];
-        for k in 0..4 {
-            let (above, below) = (a[k] + u * (b[k] - a[k]), c[k] + u * (d[k] - c[k]));
-            colour[k] = (above + v * (below - above)) * (1.0 / 65535.0);
+        let [[a, b], [c, d]] =
+            self.around(column, row).map(|pair| pair.map(|p| i32x4::new(p.map(i32::from)).round_float()));
+        let (above, below) = (a + (b - a) * u, c + (d - c) * u);
+        (above + (below - above) * v) * (1.0 / 65535.0)
+    }
+
+    /// The pixels at a place and to the right of it, in its row and in the next; mostly none is beyond an edge.
+    #[inline(always)]
+    fn around(&self, column: i32, row: i32) -> [[[u16; 4]; 2]; 2] {
+        let [left, above] = [column, row].map(|place| place as usize);
+        if column >= 0 && row >= 0 && left + 1 < self.width && above + 1 < self.height {
+            let start = above * self.width + left;
+            let pair = |start: usize| self.pixels.get(start..).and_then(<[_]>::first_chunk).copied();
+            if let (Some(upper), Some(lower)) = (pair(start), pair(start + self.width)) {
+                return [upper, lower];
+            }
         }
-        [colour[0], colour[1], colour[2]]
+        let wrap = |place: i32, size: usize| i64::from(place).rem_euclid(size as i64) as usize;
+        let at = |row: i32, column: i32| self.pixels[wrap(row, self.height) * self.width + wrap(column, self.width)];
+        [row, row.wrapping_add(1)].map(|row| [column, column.wrapping_add(1)].map(|column| at(row, column)))
     }
 }
 
@@ -48,12 +58,6 @@ impl LinearTexture {
 fn floor(value: f32) -> i32 {
     let towards_zero = value as i32;
     towards_zero - i32::from(value < towards_zero as f32)
-}
-
-/// Within 0..size; mostly it is already.
-fn wrap(place: i32, size: usize) -> usize {
-    let inside = place as usize;
-    if place >= 0 && inside < size { inside } else { i64::from(place).rem_euclid(size as i64) as usize }
 }
 
 /// Texture coordinates within a triangle.
