@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::run::{Harvest, before};
 use anyhow::{Context as _, Result};
 use formats::mesh::LoadedMesh;
-use geometry::{Camera, METRES_PER_MM, MeshIndex, TimedPose, TriangleMesh};
+use geometry::{Camera, Comparison, METRES_PER_MM, MeshIndex, TimedPose, TriangleMesh};
 use nalgebra::{Isometry3, Point3};
 use report::{Aligned, Exhibits, Gate, Machine, Refined, Report, Run, Time};
 use std::path::Path;
@@ -36,12 +36,24 @@ pub fn judge(
     };
     let compared = Instant::now();
     let bench = Bench::new(known, harvest, truth)?;
-    let (onto, laid) = bench.shape(harvest, &mut report);
+    // Each has stretches that only one core can work on.
+    let (shape, before) = rayon::join(|| bench.shape(harvest), || bench.before(plan, harvest));
+    let (onto, laid) = match shape {
+        Ok(shape) => {
+            (report.comparison, report.aligned) = (Some(shape.standing), Some(shape.aligned));
+            (shape.onto, Some(shape.laid))
+        }
+        Err(error) => {
+            report.failures.push(format!("{error:#}"));
+            (Isometry3::identity(), None)
+        }
+    };
     let sigma_m = harvest.mesh.as_ref().map_or(&[][..], |mesh| &mesh.sigma_m);
     if let Some(laid) = &laid {
         report.stated = report::stated_error(laid, sigma_m, &bench.truth.mesh)?;
     }
-    let before = bench.refinement(plan, harvest, &mut report);
+    let (before, without) = before.unzip();
+    report.refinement = harvest.refinement.as_ref().map(|refinement| Refined { without, ..refined(refinement) });
     if let Some(before) = &before {
         formats::mesh::write_ply(&out.join("before.ply"), &before.mesh)?;
     }
@@ -58,6 +70,17 @@ pub fn judge(
     };
     report.write_html(&out.join("report.html"), &exhibits)?;
     Ok(report)
+}
+
+/// The surface beside the truth.
+struct Shape {
+    /// Where it stands.
+    standing: Comparison,
+    /// The motion that lays it onto the truth, ...
+    onto: Isometry3<f64>,
+    aligned: Aligned,
+    /// ... and the surface after it.
+    laid: TriangleMesh,
 }
 
 /// What everything is held against.
@@ -78,39 +101,22 @@ impl Bench {
         Ok(Self { truth, seen, seed: known.seed })
     }
 
-    /// The surface where it stands, and laid onto the truth. Returns the motion for that, and the surface after it.
-    fn shape(&self, harvest: &Harvest, report: &mut Report) -> (Isometry3<f64>, Option<TriangleMesh>) {
-        let compared = || -> Result<_> {
-            let mesh = harvest.mesh.as_ref().context("there is no surface to compare")?;
-            let mut mesh = TriangleMesh::from(mesh);
-            let comparison = geometry::compare(&mesh, &self.truth.mesh, Some(&self.seen), self.seed)?;
-            let (onto, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?;
-            Ok((comparison, onto, aligned, mesh))
-        };
-        match compared() {
-            Ok((comparison, onto, aligned, laid)) => {
-                (report.comparison, report.aligned) = (Some(comparison), Some(aligned));
-                (onto, Some(laid))
-            }
-            Err(error) => {
-                report.failures.push(format!("{error:#}"));
-                (Isometry3::identity(), None)
-            }
-        }
+    /// The surface where it stands, and laid onto the truth.
+    fn shape(&self, harvest: &Harvest) -> Result<Shape> {
+        let mesh = harvest.mesh.as_ref().context("there is no surface to compare")?;
+        let mut laid = TriangleMesh::from(mesh);
+        let standing = geometry::compare(&laid, &self.truth.mesh, Some(&self.seen), self.seed)?;
+        let (onto, aligned) = lay_onto(&mut laid, &self.truth.mesh, &self.seen, self.seed)?;
+        Ok(Shape { standing, onto, aligned, laid })
     }
 
-    /// What refinement says of itself, and the surface that would have come out without it.
-    fn refinement(&self, plan: &Plan, harvest: &Harvest, report: &mut Report) -> Option<LoadedMesh> {
-        let refinement = harvest.refinement.as_ref()?;
-        // Without it there may be nothing that could be called a surface, which is no failure.
-        let without = before::surface(plan, &harvest.placed).and_then(|mesh| {
-            let mut mesh = TriangleMesh::from(&mesh);
-            let (_, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed)?;
-            Ok((mesh, aligned))
-        });
-        let (before, aligned): (Option<_>, Option<Aligned>) = without.ok().unzip();
-        report.refinement = Some(Refined { without: aligned, ..refined(refinement) });
-        before.map(|mesh| LoadedMesh { mesh, texture: None })
+    /// The surface that would have come out without refinement. There may be nothing that could be called a surface, which
+    /// is no failure.
+    fn before(&self, plan: &Plan, harvest: &Harvest) -> Option<(LoadedMesh, Aligned)> {
+        harvest.refinement.as_ref()?;
+        let mut mesh = TriangleMesh::from(&before::surface(plan, &harvest.placed).ok()?);
+        let (_, aligned) = lay_onto(&mut mesh, &self.truth.mesh, &self.seen, self.seed).ok()?;
+        Some((LoadedMesh { mesh, texture: None }, aligned))
     }
 
     /// The colours of the model, after it was laid onto the truth.

@@ -17,6 +17,9 @@ pub struct Listener {
     finish: Arc<AtomicBool>,
 }
 
+/// Silence of this length is the end of what was said.
+const NAP: Duration = Duration::from_millis(100);
+
 struct Ears {
     healths: Subscriber<Health>,
     progress: Subscriber<Progress>,
@@ -48,11 +51,10 @@ impl Listener {
         let finishing = finish.clone();
         let thread = std::thread::spawn(move || {
             let mut harvest = Harvest::default();
-            while !finishing.load(Ordering::SeqCst) {
-                bus.wait(Duration::from_millis(100));
+            // The nodes' last accounts come as they close: they may still be on the way.
+            while bus.wait(NAP) || !finishing.load(Ordering::SeqCst) {
                 ears.hear(&mut harvest, &bars);
             }
-            ears.hear(&mut harvest, &bars);
             harvest
         });
         Ok(Self { thread, finish })

@@ -20,7 +20,6 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 use wire::LogLevel;
 
 /// How to run.
@@ -60,10 +59,6 @@ async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> 
         outcome = course_of(&launcher, &bars) => outcome,
         _ = interrupted => Err(anyhow::anyhow!("interrupted")),
     };
-    // The last accounts come once a second.
-    if outcome.is_ok() {
-        tokio::time::sleep(Duration::from_millis(1100)).await;
-    }
     if course.linger && outcome.is_ok() {
         bars.say("done; the page stays up until Ctrl-C");
         let _ = tokio::signal::ctrl_c().await;

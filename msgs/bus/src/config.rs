@@ -76,6 +76,8 @@ impl BusConfig {
     pub(crate) fn router(&self) -> Result<Config, BusError> {
         self.check()?;
         let mut config = self.base("router")?;
+        // It looks for nobody, so there is no answer to wait for (zenoh: half a second).
+        set(&mut config, "scouting/delay", "0")?;
         set(&mut config, "listen/endpoints", &format!("[{:?}]", self.locator()))?;
         let onlookers: Vec<String> = (0..ONLOOKERS).map(|number| format!("{:?}", onlooker_id(number))).collect();
         let drop_for_onlookers = format!(

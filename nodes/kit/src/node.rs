@@ -229,6 +229,9 @@ impl Node {
         let mut reached = header.derived();
         if header.is_end() {
             reached.stamp_nanos = i64::MAX / 2;
+            // Whoever waits for the end need not wait for the account as well.
+            let report = self.account.report(&self.spec.name());
+            self.send_health(report);
         }
         self.progress.send(Progress { header: reached, node: self.spec.name(), finished_seq: header.seq })?;
         self.say();

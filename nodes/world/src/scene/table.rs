@@ -5,6 +5,7 @@ use super::{Surface, Texture};
 use crate::random::lattice;
 use geometry::{METRES_PER_MM, TriangleMesh};
 use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
 
 /// Edge of a texture cell.
 const TEXEL_MM: f64 = 0.5;
@@ -50,16 +51,15 @@ fn top(width_mm: f64, depth_mm: f64) -> TriangleMesh {
 /// Long grain along x: smooth noise, drawn out, folded into rings.
 fn wood(section: &TableSection) -> Texture {
     let [width, height] = section.size_mm.map(|length| (length / TEXEL_MM).ceil().max(1.0) as usize);
-    let mut rgb = Vec::with_capacity(width * height);
-    for row in 0..height {
-        for column in 0..width {
-            let (x, y) = (column as f64 * TEXEL_MM, row as f64 * TEXEL_MM);
-            let bend = lattice(GRAIN_SEED, [x / 90.0, y / 25.0, 0.0]);
-            let ring = (0.35 * y + 9.0 * bend).sin();
-            let fibre = lattice(GRAIN_SEED + 1, [x / 14.0, y / 0.9, 0.0]);
-            let shade = f64::from(section.grain) * (0.6 * ring + 0.4 * fibre);
-            rgb.push(section.colour.map(|c| (f64::from(c) + shade).round().clamp(0.0, 255.0) as u8));
-        }
-    }
+    let texel = &|row: usize, column: usize| {
+        let (x, y) = (column as f64 * TEXEL_MM, row as f64 * TEXEL_MM);
+        let bend = lattice(GRAIN_SEED, [x / 90.0, y / 25.0, 0.0]);
+        let ring = (0.35 * y + 9.0 * bend).sin();
+        let fibre = lattice(GRAIN_SEED + 1, [x / 14.0, y / 0.9, 0.0]);
+        let shade = f64::from(section.grain) * (0.6 * ring + 0.4 * fibre);
+        section.colour.map(|c| (f64::from(c) + shade).round().clamp(0.0, 255.0) as u8)
+    };
+    let rows = (0..height).into_par_iter();
+    let rgb = rows.flat_map_iter(|row| (0..width).map(move |column| texel(row, column))).collect();
     Texture { width, height, rgb }
 }
