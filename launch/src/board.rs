@@ -111,9 +111,9 @@ pub struct Status {
 }
 
 impl Status {
-    /// True when every required node is ready; sources begin when the others are.
+    /// True when every required node is ready: sources, when what they listen to has spoken.
     pub fn all_ready(&self) -> bool {
-        self.nodes.values().all(|node| !node.required || node.source || node.ready || node.process == Process::Ended)
+        self.nodes.values().all(|node| !node.required || node.ready || node.process == Process::Ended)
     }
 
     /// True when every required node behind the sources has done its work on this scan, or is gone.

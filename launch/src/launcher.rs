@@ -102,7 +102,7 @@ impl Launcher {
     }
 
     /// Waits until all required nodes are ready. Fails when one has failed for good, or when time is up: nodes that are
-    /// started elsewhere by hand have all the time they need.
+    /// started elsewhere by hand have all the time they need, and so have sources, whose devices may be plugged in yet.
     pub async fn wait_ready(&self) -> Result<()> {
         let mut status = self.board.watch();
         let here = |status: &Status| {

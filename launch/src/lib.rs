@@ -22,6 +22,7 @@
 pub mod backoff;
 pub mod board;
 pub mod cli;
+mod clocks;
 mod cluster_cmd;
 mod compare_cmd;
 pub mod config;

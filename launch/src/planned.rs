@@ -1,5 +1,6 @@
 //! `[nodes.NAME]`: one node of a rig.
 
+use crate::clocks;
 use crate::config;
 use crate::graph;
 use crate::kind::{DEFAULT_INSTANCE, Inputs, Kind};
@@ -91,7 +92,7 @@ pub(crate) fn read(plan: &mut Plan, kinds: &[Kind]) -> Result<()> {
     let whole = plan.to_toml();
     let notes = plan.nodes.iter_mut().filter_map(|node| node.config.get_mut("rig_config"));
     notes.for_each(|note| *note = whole.as_str().into());
-    let warnings = graph::warnings(plan);
+    let warnings: Vec<String> = graph::warnings(plan).into_iter().chain(clocks::warnings(plan)).collect();
     plan.warnings.extend(warnings);
     Ok(())
 }

@@ -54,6 +54,16 @@ fn the_launch_file_for_it_differs_from_the_demos_in_its_tracker_alone() {
 }
 
 #[test]
+fn a_camera_and_a_tracker_that_stamp_by_different_clocks_are_named() {
+    let warned = |file: &str, set: &[String]| Plan::load(&repository(file), set, KINDS).unwrap().warnings.join("\n");
+    let forgotten = warned("launch/emulated.toml", &["flock.scan_clock=false".to_owned()]);
+    assert!(forgotten.contains("set flock.scan_clock = true") && forgotten.contains("no picture"), "{forgotten}");
+    let left_over = warned("launch/bench.toml", &["tracker.scan_clock=true".to_owned()]);
+    assert!(left_over.contains("set tracker.scan_clock = false"), "{left_over}");
+    assert!(!warned("launch/emulated.toml", &[]).contains("scan_clock"));
+}
+
+#[test]
 fn what_cannot_be_played_is_refused_by_name() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let taken = file.path().to_str().unwrap();

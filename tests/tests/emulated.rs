@@ -7,10 +7,10 @@ use serial_line::{FaultsConfig, HostClock, Pty};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use system_tests::emulated::{Emulated, Tracker, one_at_a_time, simulated};
-use system_tests::rig::{Rig, first, wait_on};
+use system_tests::rig::{Rig, first, wait_on, wait_until};
 use system_tests::{limn, number, repository, succeed};
 use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, World};
-use wire::{Pose, Quality, topic};
+use wire::{Phase, Pose, Quality, topic};
 
 const FLOCK: Tracker = Tracker {
     played: &["flock"],
@@ -158,6 +158,37 @@ fn a_line_that_is_cut_in_mid_scan_is_named_and_comes_back_and_nothing_else_is_lo
     assert!(folder.path().join("mesh.ply").is_file(), "{said}");
 }
 
+#[test]
+fn a_scan_waits_for_its_tracker() {
+    let folder = tempfile::tempdir().unwrap();
+    let _alone = one_at_a_time();
+    let (launch, port) = (folder.path().join("late.toml"), folder.path().join("port"));
+    std::fs::write(&launch, alone(&port)).unwrap();
+    let mut rig = Rig::start(limn().arg("up").arg(&launch));
+    let bus = rig.bus();
+    let mut phases = bus.subscribe(&topic::run_phase(), 16).unwrap();
+    let mut newest = || std::iter::from_fn(|| phases.next()).last();
+    wait_until("what is missing is not named", || rig.said().contains("there is no"));
+    let before = wait_on(&bus, "no phase is told", &mut newest);
+    assert_eq!(before.header.phase, Phase::Aim, "no scan without a tracker: {}", rig.said());
+    let clock = HostClock::start();
+    let _pty = Pty::start(still_bird(), FaultsConfig::default(), clock, Some(&port)).unwrap();
+    wait_on(&bus, "the scan does not begin", || newest().filter(|run| run.header.phase == Phase::Both));
+}
+
+/// A rig of a Flock of Birds alone, which begins as soon as it can.
+fn alone(port: &Path) -> String {
+    format!(
+        "[run]\nbegin = 'both'\n[nodes.tracker]\nkind = 'tracker_flock'\ninstance = 'head'\n\
+         [nodes.tracker.config]\nport = {port:?}\nrate_hz = 100.0\n"
+    )
+}
+
+fn still_bird() -> FlockEmulator {
+    let world: World = Box::new(|_, _| (nalgebra::Vector3::new(0.3, -0.1, 0.2), nalgebra::UnitQuaternion::identity()));
+    FlockEmulator::new(EmulatorConfig { rate_hz: 100.0, ..EmulatorConfig::default() }, world)
+}
+
 /// An emulator that tells when it gave each record away.
 struct Told {
     flock: FlockEmulator,
@@ -207,17 +238,10 @@ fn from_the_emulators_write_to_the_pose_on_the_bus() {
     let folder = tempfile::tempdir().unwrap();
     let clock = HostClock::start();
     let (told, written) = channel();
-    let world: World = Box::new(|_, _| (nalgebra::Vector3::new(0.3, -0.1, 0.2), nalgebra::UnitQuaternion::identity()));
     let _alone = one_at_a_time();
-    let flock = FlockEmulator::new(EmulatorConfig { rate_hz: 100.0, ..EmulatorConfig::default() }, world);
-    let pty = Pty::start(Told { flock, clock, told }, FaultsConfig::default(), clock, None).unwrap();
+    let pty = Pty::start(Told { flock: still_bird(), clock, told }, FaultsConfig::default(), clock, None).unwrap();
     let launch = folder.path().join("alone.toml");
-    let text = format!(
-        "[run]\nbegin = 'both'\n[nodes.tracker]\nkind = 'tracker_flock'\ninstance = 'head'\n\
-         [nodes.tracker.config]\nport = {:?}\nrate_hz = 100.0\n",
-        pty.path()
-    );
-    std::fs::write(&launch, text).unwrap();
+    std::fs::write(&launch, alone(pty.path())).unwrap();
     let mut rig = Rig::start(limn().arg("up").arg(&launch));
     let bus = rig.bus();
     let delays = delays_ms(&bus, clock, &written, 1000);

@@ -83,6 +83,9 @@ pub struct Polhemus {
     /// The level of distortion that it tells: metal is near.
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub distortion: i32,
+    /// It changes its mind so often about the half of space that its sensors are in.
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    pub flip_every: f64,
     #[command(flatten)]
     pub(super) common: Common,
 }
@@ -91,6 +94,7 @@ impl Polhemus {
     /// The device, switched on.
     pub(super) fn emulator(&self, beginning: &Beginning) -> Result<PolhemusEmulator> {
         let most = self.family.most_stations();
+        ensure!((0.0..=1e6).contains(&self.flip_every), "--flip-every {}: 0 to 1000000 s", self.flip_every);
         ensure!((1..=most).contains(&self.stations), "--stations {}: a {:?} has {most}", self.stations, self.family);
         let stations = (1..=self.stations).collect();
         let driver =
@@ -101,6 +105,7 @@ impl Polhemus {
             baud: self.baud,
             rate_hz: driver.sheet().rate_hz,
             distortion: self.distortion,
+            flip_every_nanos: (self.flip_every * 1e9) as i64,
             ..tracker_polhemus::emulator::EmulatorConfig::of(self.family)
         };
         Ok(PolhemusEmulator::new(config, self.common.hand.sensors(1, beginning.clone())?))

@@ -4,7 +4,7 @@ use crate::BusError;
 use std::marker::PhantomData;
 use wire::topic::{Class, Topic};
 use wire::{Message, codec};
-use zenoh::bytes::Encoding;
+use zenoh::bytes::{Encoding, ZBytes};
 use zenoh::pubsub;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait};
@@ -61,7 +61,11 @@ impl<M: Message> Publisher<M> {
     /// Numbers and sends a message.
     pub fn send(&mut self, mut message: M) -> Result<(), BusError> {
         message.header_mut().seq = self.next_seq;
-        let bytes = codec::encode(&message);
+        let (head, tail) = codec::encode_apart(message);
+        let mut parts = ZBytes::writer();
+        parts.append(head.into());
+        parts.append(tail.into());
+        let bytes = parts.finish();
         self.next_seq += 1;
         match &self.line {
             Line::Plain(publisher) => publisher.put(bytes).wait(),

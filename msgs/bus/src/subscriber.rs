@@ -156,7 +156,11 @@ impl<M: Message> Subscriber<M> {
     fn read(&mut self, sample: &Sample) -> Result<Option<M>, codec::DecodeError> {
         let encoding = sample.encoding().to_string();
         codec::check_schema::<M>(encoding.split_once(';').map_or("", |(_, schema)| schema))?;
-        let message: M = codec::decode(&sample.payload().to_bytes())?;
+        let payload = sample.payload();
+        let message: M = match payload.slices().count() {
+            0 | 1 => codec::decode(&payload.to_bytes())?,
+            _ => codec::decode_pieces(payload.reader(), payload.len())?,
+        };
         let key = sample.key_expr().as_str();
         if self.fresh_only && !self.account.is_fresh(key, message.header()) {
             self.counts.repeated = self.account.repeated;

@@ -52,6 +52,30 @@ pub fn encode<M: Message>(message: &M) -> Vec<u8> {
     bincode::encode_to_vec(message, config()).expect("plain structs encode into memory")
 }
 
+/// The bytes of a message in two parts, of which the second is its [tail](Message::take_tail) as it lay in memory.
+///
+/// ```
+/// # use wire::{Bulk, Frame, Header, Light, PixelFormat, codec};
+/// # let (header, light) = (Header::default(), Light { laser: true, lamp: false });
+/// # let (width, height, stride, format) = (20, 15, 20, PixelFormat::Grey8);
+/// # let data = Bulk(vec![7; 300]);
+/// # let frame = Frame { header, width, height, stride, format, light, exposure_nanos: 0, gain: 1.0, gamma: 1.0, data };
+/// let (head, pixels) = codec::encode_apart(frame.clone());
+/// assert_eq!(pixels, *frame.data);
+/// assert_eq!([head, pixels].concat(), codec::encode(&frame));
+/// ```
+#[allow(clippy::expect_used, reason = "as in `encode`")]
+pub fn encode_apart<M: Message>(mut message: M) -> (Vec<u8>, Vec<u8>) {
+    let tail = message.take_tail();
+    let mut head = encode(&message);
+    if !tail.is_empty() {
+        // The length of nothing is the one byte with which the head ends now.
+        head.pop();
+        head.extend(bincode::encode_to_vec(tail.len() as u64, config()).expect("a number encodes into memory"));
+    }
+    (head, tail)
+}
+
 /// A message from its bytes; all of them must be used.
 pub fn decode<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
     let malformed = |reason: String| DecodeError::Malformed { name: M::NAME, bytes: bytes.len(), reason };
@@ -59,6 +83,17 @@ pub fn decode<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
     match bytes.len() - used {
         0 => Ok(message),
         left => Err(DecodeError::Trailing { name: M::NAME, left }),
+    }
+}
+
+/// The same from bytes that lie in pieces, as large messages come: they are copied once, to where they belong.
+pub fn decode_pieces<M: Message>(pieces: impl std::io::Read, bytes: usize) -> Result<M, DecodeError> {
+    let mut pieces = pieces.take(bytes as u64);
+    let malformed = |reason: String| DecodeError::Malformed { name: M::NAME, bytes, reason };
+    let message = bincode::decode_from_std_read(&mut pieces, config()).map_err(|e| malformed(format!("{e:?}")))?;
+    match pieces.limit() {
+        0 => Ok(message),
+        left => Err(DecodeError::Trailing { name: M::NAME, left: left as usize }),
     }
 }
 

@@ -63,7 +63,7 @@ layout! {
         pub data: Bulk<u8>,
     }
 }
-message!(Frame @ 1);
+message!(Frame @ 1, data);
 
 /// Why the bytes of a frame cannot be what its header says.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -24,6 +24,11 @@ pub trait Message: Layout + bincode::Encode + bincode::Decode<()> + Clone + Send
     fn header(&self) -> &crate::Header;
     /// The header, to be stamped by the publisher.
     fn header_mut(&mut self) -> &mut crate::Header;
+    /// Takes out the bytes that its encoding ends with, when they are its last field and many: a picture's pixels. They
+    /// travel as they lie in memory, so whoever sends them need not copy them.
+    fn take_tail(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 }
 
 const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
@@ -151,9 +156,9 @@ macro_rules! element {
     };
 }
 
-/// Makes a declared struct a message: `message!(Frame @ 1);`
+/// Makes a declared struct a message: `message!(Pose @ 1);`, and with bytes as its last field `message!(Frame @ 1, data);`
 macro_rules! message {
-    ($name:ident @ $version:literal) => {
+    ($name:ident @ $version:literal $(, $tail:ident)?) => {
         impl $crate::Message for $name {
             const NAME: &'static str = stringify!($name);
             const VERSION: u32 = $version;
@@ -163,6 +168,9 @@ macro_rules! message {
             fn header_mut(&mut self) -> &mut $crate::Header {
                 &mut self.header
             }
+            $(fn take_tail(&mut self) -> Vec<u8> {
+                std::mem::take(&mut self.$tail.0)
+            })?
         }
     };
 }

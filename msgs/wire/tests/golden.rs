@@ -33,6 +33,8 @@ fn mesh() -> Mesh {
 fn check<M: Message + PartialEq + std::fmt::Debug>(message: M) {
     let bytes = codec::encode(&message);
     assert_eq!(codec::decode::<M>(&bytes).unwrap(), message);
+    let (head, tail) = codec::encode_apart(message.clone());
+    assert!([head, tail].concat() == bytes, "in two parts it is the same");
     let mut hex = format!("{}\n", codec::schema::<M>());
     for (i, byte) in bytes.iter().enumerate() {
         write!(hex, "{byte:02x}{}", if i % 32 == 31 { "\n" } else { "" }).unwrap();

@@ -3,10 +3,16 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
 use proptest::prelude::*;
+use std::io::Read as _;
 use wire::*;
 
 fn reads_or_refuses<M: Message>(bytes: &[u8]) {
-    if let Ok(message) = codec::decode::<M>(bytes) {
+    let whole = codec::decode::<M>(bytes);
+    let (first, second) = bytes.split_at(bytes.len() / 2);
+    let pieces = codec::decode_pieces::<M>(first.chain(second), bytes.len());
+    let again = |read: &Result<M, codec::DecodeError>| read.as_ref().ok().map(codec::encode);
+    assert_eq!(again(&pieces), again(&whole), "in pieces it is the same");
+    if let Ok(message) = whole {
         // What was read is what was written, to the last byte.
         assert!(codec::decode::<M>(&codec::encode(&message)).is_ok());
     }

@@ -1,8 +1,8 @@
 //! A picture of the driver in, a frame out.
 
-use crate::capture::Exposed;
 use crate::clock::{ClockMap, ClockReading};
 use crate::config::{Config, ConfigError};
+use crate::device::Exposed;
 use crate::judge::LightJudge;
 use crate::look::look;
 use crate::pixels::{PixelError, unpack};

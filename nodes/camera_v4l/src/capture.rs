@@ -1,49 +1,13 @@
 //! A thread that keeps the newest picture, whatever happens to the camera.
 
+use crate::device::{Device, Exposed, Opener};
 use crate::exposure::Setting;
-use crate::pixels::Layout;
 use crate::sequence::SequenceCount;
-use crate::stamp::DriverStamp;
 use crate::trouble::Trouble;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-
-/// A picture as the driver gave it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Exposed {
-    /// As many as the driver has filled.
-    pub bytes: Vec<u8>,
-    /// How they are laid out.
-    pub layout: Layout,
-    /// When it was.
-    pub stamp: DriverStamp,
-    /// The driver's number.
-    pub sequence: u32,
-    /// The driver says that it is damaged.
-    pub damaged: bool,
-    /// What the camera was set to.
-    pub setting: Setting,
-}
-
-/// An open camera.
-pub trait Device {
-    /// What was found and set, in a sentence.
-    fn found(&self) -> String;
-    /// The next picture; none when none came in this time.
-    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed>, Trouble>;
-    /// Sets exposure and gain; what they are then.
-    fn set(&mut self, setting: Setting) -> Result<Setting, Trouble>;
-}
-
-/// Opens the camera and sets it, again and again.
-pub trait Opener: Send + 'static {
-    /// An open camera that is set as configured.
-    fn open(&mut self) -> Result<Box<dyn Device>, Trouble>;
-    /// What to say when nothing comes, and after how long.
-    fn silence(&self) -> (Duration, Trouble);
-}
 
 /// What the operator should know.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -195,11 +159,11 @@ impl<O: Opener, S: FnMut(News)> Watcher<O, S> {
             match device.expose(NAP) {
                 Ok(Some(exposed)) => {
                     last = Instant::now();
+                    let wanted = self.keep(exposed);
                     if !std::mem::replace(&mut told, true) {
                         self.named = None;
                         (self.say)(News::Streaming(device.found()));
                     }
-                    let wanted = self.keep(exposed);
                     if let Some(Err(trouble)) = wanted.map(|setting| device.set(setting)) {
                         return Some(trouble);
                     }
@@ -213,19 +177,21 @@ impl<O: Opener, S: FnMut(News)> Watcher<O, S> {
     }
 
     /// Holds a picture for whoever fetches it; what the camera is to be set to.
-    fn keep(&mut self, exposed: Exposed) -> Option<Setting> {
+    fn keep(&mut self, exposed: Exposed<&[u8]>) -> Option<Setting> {
         self.sequence.note(exposed.sequence);
+        // Whoever fetches is not kept waiting for the copy.
+        let whole = (!exposed.damaged).then(|| exposed.copied());
         let mut held = self.shared.held();
         held.counts.lost = self.sequence.lost;
         held.counts.repeated = self.sequence.repeated;
-        if exposed.damaged {
-            held.counts.damaged += 1;
-        } else {
+        if let Some(whole) = whole {
             held.counts.pictures += 1;
-            if held.newest.replace(exposed).is_some() {
+            if held.newest.replace(whole).is_some() {
                 held.counts.skipped += 1;
             }
             self.shared.came.notify_one();
+        } else {
+            held.counts.damaged += 1;
         }
         held.wanted.take()
     }

@@ -120,7 +120,7 @@ impl Config {
             ("exposure.most_gain", exposure.most_gain, 1.0, 1000.0, "1 to 1000"),
             ("light.stripe_height", f64::from(light.stripe_height), 1.0, 4000.0, "1 to 4000 grey levels"),
             ("light.stripe_share", f64::from(light.stripe_share), 0.0, 1.0, "0 to 1"),
-            ("light.lamp_contrast", f64::from(light.lamp_contrast), 1.0, 255.0, "1 to 255 grey levels"),
+            ("light.lamp_stops", f64::from(light.lamp_stops), 0.1, 16.0, "0.1 to 16 stops"),
         ] {
             if !(value >= least && value <= most) {
                 return refuse(key, value.to_string(), wanted);

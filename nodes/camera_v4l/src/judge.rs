@@ -41,7 +41,7 @@ impl LightJudge {
     /// are wrong), or, when no line is seen, as neither.
     pub fn judge(&mut self, phase: Phase, seen: &Look, config: &LightConfig) -> Light {
         let levels = self.levels.get_or_insert(Levels::starting(seen.brightness));
-        let lamp = levels.lamp(&seen.brightness, config.lamp_contrast);
+        let lamp = levels.lamp(&seen.brightness, config.lamp_stops);
         if lamp == Lamp::Off && phase != Phase::Colour {
             self.usual_share += USUAL_FOLLOWS * (seen.stripe_share - self.usual_share);
         }
@@ -60,7 +60,7 @@ impl LightJudge {
     }
 }
 
-/// Grey levels of each band.
+/// Light of each band, in stops.
 #[derive(Debug, Clone, Copy)]
 struct Levels {
     /// Without the lamp.
@@ -76,19 +76,32 @@ impl Levels {
         Self { dark: now, bright: None, before: (now, false) }
     }
 
-    /// Compares a picture with the newest ones of either kind, and remembers it as one of them. Where the lamp does not
-    /// reach, a band says nothing.
-    fn lamp(&mut self, now: &Bands, least_contrast: f32) -> Lamp {
-        let lamp = self.by_jump(now, least_contrast).unwrap_or_else(|| self.by_level(now, least_contrast));
-        self.before = (*now, lamp == Lamp::On);
-        lamp
+    /// Compares a picture with the newest ones of either kind, and remembers it as one of them.
+    fn lamp(&mut self, now: &Bands, least_stops: f32) -> Lamp {
+        let places = self.places(now, least_stops);
+        let is_on = self.by_jump(now, least_stops).unwrap_or_else(|| self.by_level(now, least_stops));
+        self.before = (*now, is_on);
+        match is_on {
+            true if places.iter().all(|place| *place > STRAYS) => Lamp::On,
+            false if places.iter().all(|place| *place < 1.0 - STRAYS) => Lamp::Off,
+            _ => Lamp::Switched,
+        }
+    }
+
+    /// Where each band lies between its levels without the lamp (0) and with it (1). Where the lamp does not reach, a band
+    /// says nothing.
+    fn places(&self, now: &Bands, least_stops: f32) -> Vec<f32> {
+        let bright = self.bright.unwrap_or(self.dark);
+        let contrasts = (0..BANDS).map(|band| (band, bright[band] - self.dark[band]));
+        let reached = contrasts.filter(|(_, contrast)| *contrast >= least_stops);
+        reached.map(|(band, contrast)| (now[band] - self.dark[band]) / contrast).collect()
     }
 
     /// What jumps up has the lamp, and what jumps down shows that the one before had it, whatever was believed till now.
-    fn by_jump(&mut self, now: &Bands, least_contrast: f32) -> Option<Lamp> {
+    fn by_jump(&mut self, now: &Bands, least_stops: f32) -> Option<bool> {
         let (last, last_on) = self.before;
         let contrast = self.bright.map_or(0.0, |bright| most(&bright, &self.dark));
-        let enough = least_contrast.max(MIDDLE * contrast);
+        let enough = least_stops.max(MIDDLE * contrast);
         let brighter = now.iter().sum::<f32>() > last.iter().sum::<f32>();
         let is_on = if brighter && most(now, &last) >= enough && (last_on || self.bright.is_none()) {
             true
@@ -99,31 +112,25 @@ impl Levels {
         };
         let (bright, dark) = if is_on { (*now, last) } else { (last, *now) };
         (self.bright, self.dark) = (Some(bright), dark);
-        Some(if is_on { Lamp::On } else { Lamp::Off })
+        Some(is_on)
     }
 
-    fn by_level(&mut self, now: &Bands, least_contrast: f32) -> Lamp {
-        let Some(bright) = self.bright.filter(|bright| most(bright, &self.dark) >= least_contrast) else {
+    fn by_level(&mut self, now: &Bands, least_stops: f32) -> bool {
+        let Some(bright) = self.bright.filter(|bright| most(bright, &self.dark) >= least_stops) else {
             (self.bright, self.dark) = (None, *now);
-            return Lamp::Off;
+            return false;
         };
-        let mut known = Vec::with_capacity(BANDS);
         let (mut above, mut contrasts) = (0.0, 0.0);
         for band in 0..BANDS {
             let contrast = bright[band] - self.dark[band];
-            if contrast >= least_contrast {
+            if contrast >= least_stops {
                 above += now[band] - self.dark[band];
                 contrasts += contrast;
-                known.push((now[band] - self.dark[band]) / contrast);
             }
         }
         let is_on = above > MIDDLE * contrasts;
         self.follow(now, bright, is_on);
-        match is_on {
-            true if known.iter().all(|place| *place > STRAYS) => Lamp::On,
-            false if known.iter().all(|place| *place < 1.0 - STRAYS) => Lamp::Off,
-            _ => Lamp::Switched,
-        }
+        is_on
     }
 
     fn follow(&mut self, now: &Bands, mut bright: Bands, is_on: bool) {

@@ -11,13 +11,13 @@ pub struct LightConfig {
     pub stripe_height: f32,
     /// At least this share of the rows (or columns) shows the line when the laser alone is on.
     pub stripe_share: f32,
-    /// The lamp makes a picture brighter by at least so many grey levels.
-    pub lamp_contrast: f32,
+    /// The lamp makes a picture brighter by at least so many stops: 1 is twice the light.
+    pub lamp_stops: f32,
 }
 
 impl Default for LightConfig {
     fn default() -> Self {
-        Self { stripe_height: 25.0, stripe_share: 0.05, lamp_contrast: 8.0 }
+        Self { stripe_height: 25.0, stripe_share: 0.05, lamp_stops: 1.0 }
     }
 }
 
@@ -29,7 +29,8 @@ pub const BANDS: usize = 8;
 pub struct Look {
     /// Share of the rows (or columns) that show a line which goes on in the next.
     pub stripe_share: f32,
-    /// Mean grey level of each band, from top to bottom.
+    /// Light of each band, from top to bottom, in stops: the binary logarithm of its mean, in full scales of the sensor at
+    /// gain 1 and an exposure of 1 ms. So it says what is lit, however the camera is set.
     pub brightness: [f32; BANDS],
 }
 
@@ -67,9 +68,10 @@ pub fn look(frame: &Frame, laser: &LaserPlane, config: &LightConfig) -> Result<L
         linked += u32::from(now.zip(before).is_some_and(|(now, before)| now.abs_diff(before) <= LINK_PX));
         before = now;
     }
+    let light = light_of_level(frame.gamma);
     let brightness = std::array::from_fn(|band| {
         let (first, last) = (band * height / BANDS, (band + 1) * height / BANDS);
-        mean_brightness(frame, first..last.max(first + 1).min(height))
+        (mean_light(frame, &light, first..last.max(first + 1).min(height)) + DARKEST).log2() - sensitivity_stops(frame)
     });
     Ok(Look { stripe_share: linked as f32 / looked_at.max(1) as f32, brightness })
 }
@@ -83,13 +85,28 @@ fn line_at(levels: &[f32], height: f32) -> Option<usize> {
     stands_out.then_some(at)
 }
 
+/// Less light, as a share of full scale, is noise.
+const DARKEST: f32 = 1.0 / 1024.0;
+
+/// By how many stops gain and exposure make a picture brighter; an exposure that nobody knows is always the same.
+fn sensitivity_stops(frame: &Frame) -> f32 {
+    let millis = if frame.exposure_nanos > 0 { frame.exposure_nanos as f32 * 1e-6 } else { 1.0 };
+    (frame.gain.max(f32::MIN_POSITIVE) * millis).log2()
+}
+
+/// The light behind each grey level, 0 to 1.
+fn light_of_level(gamma: f32) -> [f32; 256] {
+    std::array::from_fn(|level| (level as f32 / 255.0).powf(gamma))
+}
+
 /// The line itself is too narrow to matter.
-fn mean_brightness(frame: &Frame, rows: std::ops::Range<usize>) -> f32 {
+fn mean_light(frame: &Frame, light: &[f32; 256], rows: std::ops::Range<usize>) -> f32 {
     let (mut sum, mut count) = (0.0, 0_u32);
     for v in rows.step_by(STEP / 2) {
         for u in (0..frame.width as usize).step_by(STEP) {
             let [r, g, b] = rgb(frame, u, v);
-            sum += 0.299 * r + 0.587 * g + 0.114 * b;
+            // Outside of 0 to 255, as a YUYV pixel may be, it is clipped.
+            sum += light[usize::from((0.299 * r + 0.587 * g + 0.114 * b) as u8)];
             count += 1;
         }
     }

@@ -39,6 +39,9 @@ pub fn run_with<O: Opener>(mut node: Node, opener: impl FnOnce(Config) -> O) -> 
         stripes,
         told: Counts::default(),
     };
+    if !node.wait_for_device(|| source.capture.counts().pictures > 0) {
+        return node.close();
+    }
     node.ready()?;
     let mut scanned = None;
     while let Some(go) = node.wait_for_go(scanned)? {
@@ -76,6 +79,9 @@ impl Source {
             match self.science.process(exposed, &clock_readings(), phase) {
                 Ok(mut frame) => {
                     frame.header.scan = go.scan;
+                    if phase == Phase::Both && !(frame.light.laser || frame.light.lamp) {
+                        node.refuse("picture that shows neither light for certain", 1);
+                    }
                     let header = frame.header;
                     last = last.max(header.stamp_nanos);
                     pictures.send(frame)?;

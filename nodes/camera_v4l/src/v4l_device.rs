@@ -1,9 +1,9 @@
 //! The camera itself. What the crate v4l does on its own account, and what is done here because of it, was seen on a real
 //! driver: see `tests/vivid`.
 
-use crate::capture::{Device, Exposed, Opener};
 use crate::config::Config;
 use crate::controls::{self, Controls};
+use crate::device::{Device, Exposed, Opener};
 use crate::exposure::Setting;
 use crate::granted::{Difference, Granted, allowance, differences, part};
 use crate::host::monotonic_nanos;
@@ -185,42 +185,35 @@ struct V4lCamera {
 }
 
 impl V4lCamera {
-    fn fetch(&mut self, wait: Duration) -> io::Result<Option<Exposed>> {
-        let Some(mut stream) = self.stream.take() else { return Ok(None) };
-        let fetched = calmly(|| self.fetch_from(&mut stream, wait));
-        self.stream = Some(stream);
-        fetched
-    }
-
-    fn fetch_from(&mut self, stream: &mut Stream<'static>, wait: Duration) -> io::Result<Option<Exposed>> {
+    fn fetch(&mut self, wait: Duration) -> io::Result<Option<Exposed<&[u8]>>> {
+        let Self { stream, started, index_lost, layout, setting, .. } = self;
+        let Some(stream) = stream else { return Ok(None) };
         // Asked before `next`, which hands a buffer back first: when it then fails, it has none to hand back.
         let millis = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
-        if self.started && stream.handle().poll(POLLIN, millis)? == 0 {
+        if *started && stream.handle().poll(POLLIN, millis)? == 0 {
             return Ok(None);
         }
-        if self.index_lost {
+        if *index_lost {
             // Its pixels cannot be had, but the next ones can.
             stream.dequeue()?;
-            self.index_lost = false;
+            *index_lost = false;
             return Ok(None);
         }
-        if !self.started {
-            self.started = true;
+        if !*started {
+            *started = true;
             stream.set_timeout(wait);
         }
-        self.index_lost = true;
+        *index_lost = true;
         let (buffer, meta) = stream.next()?;
-        self.index_lost = false;
-        let arrival_nanos = monotonic_nanos();
-        let filled = buffer.get(..meta.bytesused as usize).unwrap_or(buffer);
+        *index_lost = false;
         let nanos = meta.timestamp.sec * 1_000_000_000 + meta.timestamp.usec * 1000;
         Ok(Some(Exposed {
-            bytes: filled.to_vec(),
-            layout: self.layout,
-            stamp: DriverStamp { nanos, flags: u32::from(meta.flags), arrival_nanos },
+            bytes: buffer.get(..meta.bytesused as usize).unwrap_or(buffer),
+            layout: *layout,
+            stamp: DriverStamp { nanos, flags: u32::from(meta.flags), arrival_nanos: monotonic_nanos() },
             sequence: meta.sequence,
             damaged: meta.flags.contains(Flags::ERROR),
-            setting: self.setting,
+            setting: *setting,
         }))
     }
 }
@@ -230,11 +223,12 @@ impl Device for V4lCamera {
         self.found.clone()
     }
 
-    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed>, Trouble> {
+    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed<&[u8]>>, Trouble> {
         use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-        match self.fetch(wait) {
+        let path = self.config.device.clone();
+        match calmly(|| self.fetch(wait)) {
             Err(error) if matches!(error.kind(), Interrupted | TimedOut | WouldBlock) => Ok(None),
-            fetched => fetched.map_err(|error| Trouble::streaming(&self.config.device, &error)),
+            fetched => fetched.map_err(|error| Trouble::streaming(&path, &error)),
         }
     }
 

@@ -52,9 +52,9 @@ impl Device for Played {
         "a played camera".to_owned()
     }
 
-    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed>, Trouble> {
+    fn expose(&mut self, wait: Duration) -> Result<Option<Exposed<&[u8]>>, Trouble> {
         let exposed = |sequence, damaged| Exposed {
-            bytes: vec![0; 4],
+            bytes: &[0_u8; 4][..],
             layout: Layout { format: DriverFormat::Grey, width: 2, height: 2, stride: 2 },
             stamp: DriverStamp { nanos: 0, flags: 0x2000, arrival_nanos: 0 },
             sequence,

@@ -101,6 +101,8 @@ fn every_trouble_says_what_to_do() {
         (opening(19), "plug it in again"),
         (streaming(19), "plug it in again"),
         (streaming(5), "another USB port"),
+        (Trouble::Format { device: device.into(), fourcc: "H264".to_owned() }.to_string(), "set format to GREY, YUYV"),
+        (Trouble::Silent { device: device.into(), seconds: 1 }.to_string(), "a shorter cable"),
     ] {
         assert!(text.contains(advice) && text.contains("/dev/video9"), "{text}");
     }

@@ -4,9 +4,21 @@ use crate::node::{NAP, Node};
 use crate::pace::{Go, Pace, until};
 use crate::window::Turn;
 use std::time::Duration;
-use wire::{Header, Phase};
+use wire::{Header, Phase, RunPhase};
 
 impl Node {
+    /// For a source: waits until its device gives something, so that no scan begins without it by itself; or until the
+    /// operator has begun one all the same. False when the node was told to stop.
+    pub fn wait_for_device(&mut self, gives: impl Fn() -> bool) -> bool {
+        let begun = |run: &RunPhase| !matches!(run.header.phase, Phase::Aim | Phase::End);
+        while !gives() && !self.phase.as_ref().is_some_and(begun) {
+            if !self.wait() {
+                return false;
+            }
+        }
+        true
+    }
+
     /// For a source: waits until the nodes it needs are ready and the operator has chosen a phase. `None` when the node
     /// was told to stop.
     pub fn wait_for_go(&mut self, after_scan: Option<u64>) -> anyhow::Result<Option<Go>> {

@@ -2,6 +2,7 @@
 
 use crate::protocol::Dialect;
 use serde::{Deserialize, Serialize};
+use serial_line::ConfigError;
 use std::path::PathBuf;
 
 /// Where the lights are, and what they do in each phase.
@@ -41,22 +42,10 @@ impl Default for Config {
     }
 }
 
-/// A setting that cannot be.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("light: {key} = {value}: {wanted}")]
-pub struct ConfigError {
-    /// The key.
-    pub key: &'static str,
-    /// What it holds.
-    pub value: String,
-    /// What it should hold.
-    pub wanted: &'static str,
-}
-
 impl Config {
     /// Refuses what no lights can do.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let refuse = |key, value: String, wanted| Err(ConfigError { key, value, wanted });
+        let refuse = |key, value: String, wanted| Err(ConfigError { node: "light", key, value, wanted });
         if self.port.as_os_str().is_empty() {
             return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
         }

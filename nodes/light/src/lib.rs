@@ -31,7 +31,8 @@ pub mod node;
 mod plan;
 pub mod protocol;
 
-pub use config::{Config, ConfigError};
+pub use config::Config;
 #[cfg(feature = "serial")]
 pub use lights::Lights;
 pub use plan::{DARK, lit};
+pub use serial_line::ConfigError;

@@ -9,8 +9,8 @@
 //! - [`Envelope`]: the line under all arrivals, which both stand on: delays only add.
 //!
 //! What trackers on such lines have in common is here as well, since nodes never depend on nodes: [`PoseTracker`], what
-//! turns records into poses; [`Rounds`], whose record it is; [`Tally`], what a decoder has seen; [`Step`], what a device
-//! is told; [`Emulated`], [`Speech`] and [`Faults`], a device that is played, and what goes wrong on real lines.
+//! turns records into poses; [`HalfSpace`], which side of the transmitter they are on; [`Rounds`], whose record it is; [`Tally`], what a decoder has seen; [`Step`], what a device
+//! is told; [`ConfigError`], a setting that cannot be; [`Emulated`], [`Speech`] and [`Faults`], a device that is played, and what goes wrong on real lines.
 //!
 //! With the feature `serial`:
 //!
@@ -22,12 +22,14 @@
 //! With the feature `node`, which brings the bus: `node::run`, the life of a node that sends what a tracker says. This is
 //! the only crate that names serialport.
 
+mod config_error;
 #[cfg(feature = "serial")]
 mod device;
 mod device_clock;
 mod emulated;
 mod envelope;
 mod faults;
+mod half_space;
 mod host_clock;
 #[cfg(feature = "serial")]
 mod line;
@@ -50,12 +52,14 @@ mod step;
 mod tally;
 mod wire_time;
 
+pub use config_error::ConfigError;
 #[cfg(feature = "serial")]
 pub use device::{Arrived, Counts, Device, Heard, News, Trouble};
 pub use device_clock::DeviceClock;
 pub use emulated::{Emulated, Speech};
 pub use envelope::{Envelope, FittedLine};
 pub use faults::{Delivery, Faults, FaultsConfig};
+pub use half_space::HalfSpace;
 pub use host_clock::HostClock;
 #[cfg(feature = "serial")]
 pub use line::{Chunk, Line, LineSettings};

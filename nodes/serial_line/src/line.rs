@@ -1,7 +1,7 @@
 //! An open port.
 
 use crate::{HostClock, LineError, Step};
-use serialport::{ClearBuffer, ErrorKind, SerialPort as _, TTYPort};
+use serialport::{ClearBuffer, SerialPort as _, TTYPort};
 use std::io::{ErrorKind as IoKind, Read as _, Write as _};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,7 +54,8 @@ impl Line {
             .timeout(NAP)
             .dtr_on_open(settings.dtr)
             .exclusive(true);
-        let port = TTYPort::open(&builder).map_err(|error| open_error(settings, &error))?;
+        let port =
+            TTYPort::open(&builder).map_err(|error| LineError::opening(&settings.path, settings.baud, &error))?;
         let mut line = Self { port, settings: settings.clone(), clock, stopping, has_modem_lines: true };
         line.has_modem_lines = line.set_rts(settings.rts);
         line.port.set_timeout(NAP).map_err(|error| line.gone(&error.to_string()))?;
@@ -182,28 +183,4 @@ impl Drop for Line {
 
 fn passing(kind: IoKind) -> bool {
     matches!(kind, IoKind::TimedOut | IoKind::Interrupted | IoKind::WouldBlock)
-}
-
-fn open_error(settings: &LineSettings, error: &serialport::Error) -> LineError {
-    let path = settings.path.clone();
-    let reason = error.description.clone();
-    match error.kind() {
-        ErrorKind::Io(IoKind::NotFound) => LineError::NotThere { path, present: present() },
-        ErrorKind::Io(IoKind::PermissionDenied) => LineError::NoPermission { path },
-        // Both of the locks (TIOCEXCL and flock) end here.
-        ErrorKind::NoDevice => LineError::Busy { path },
-        ErrorKind::InvalidInput => LineError::Baud { path, baud: settings.baud, reason },
-        _ => LineError::NotSerial { path, reason, present: present() },
-    }
-}
-
-/// The ports of this machine, as the end of a sentence.
-fn present() -> String {
-    let names: Vec<String> =
-        serialport::available_ports().unwrap_or_default().into_iter().map(|port| port.port_name).collect();
-    if names.is_empty() {
-        " (no serial port is there)".to_owned()
-    } else {
-        format!(" (there are: {})", names.join(", "))
-    }
 }

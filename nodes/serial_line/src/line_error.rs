@@ -1,6 +1,8 @@
 //! What goes wrong with a port, and what to do about it.
 
-use std::path::PathBuf;
+use serialport::ErrorKind;
+use std::io::ErrorKind as IoKind;
+use std::path::{Path, PathBuf};
 
 /// A port that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -65,4 +67,30 @@ pub enum LineError {
     /// The node was told to stop.
     #[error("stopped")]
     Stopped,
+}
+
+impl LineError {
+    /// What an error means with which a port was opened.
+    pub fn opening(path: &Path, baud: u32, error: &serialport::Error) -> Self {
+        let (path, reason) = (path.to_owned(), error.description.clone());
+        match error.kind() {
+            ErrorKind::Io(IoKind::NotFound) => Self::NotThere { path, present: present() },
+            ErrorKind::Io(IoKind::PermissionDenied) => Self::NoPermission { path },
+            // Both of the locks (TIOCEXCL and flock) end here.
+            ErrorKind::NoDevice => Self::Busy { path },
+            ErrorKind::InvalidInput => Self::Baud { path, baud, reason },
+            _ => Self::NotSerial { path, reason, present: present() },
+        }
+    }
+}
+
+/// The ports of this machine, as the end of a sentence.
+fn present() -> String {
+    let names: Vec<String> =
+        serialport::available_ports().unwrap_or_default().into_iter().map(|port| port.port_name).collect();
+    if names.is_empty() {
+        " (no serial port is there)".to_owned()
+    } else {
+        format!(" (there are: {})", names.join(", "))
+    }
 }

@@ -35,6 +35,9 @@ pub fn run<T: PoseTracker, D: Device<Record = T::Record>>(mut node: Node, source
     let clock = HostClock::start();
     let session = Session::start(source.device, source.line, clock, tell);
     let mut live = Live { tracker: source.tracker, session, outputs, clock, scan_clock: source.scan_clock };
+    if !node.wait_for_device(|| live.session.counts().records > 0) {
+        return node.close();
+    }
     node.ready()?;
     let mut scanned = None;
     while let Some(go) = node.wait_for_go(scanned)? {

@@ -1,5 +1,10 @@
 //! Where the flock is, how it is set, and what is known of its errors.
 
+mod birds;
+mod check;
+mod filters;
+
+use crate::hemisphere::Hemisphere;
 use crate::protocol::address::Addressing;
 use crate::protocol::reading::Scale;
 use crate::protocol::records::Format;
@@ -74,51 +79,6 @@ pub struct Config {
     pub good_to_m: f64,
 }
 
-/// Half of the space around the transmitter: x away from its cable, y to the right, z down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Hemisphere {
-    /// +x.
-    #[default]
-    Forward,
-    /// -x.
-    Aft,
-    /// -z.
-    Upper,
-    /// +z.
-    Lower,
-    /// -y.
-    Left,
-    /// +y.
-    Right,
-}
-
-impl Hemisphere {
-    /// Axis and sign as the commands have them.
-    pub fn code(self) -> [u8; 2] {
-        match self {
-            Self::Forward => [0x00, 0],
-            Self::Aft => [0x00, 1],
-            Self::Upper => [0x0C, 1],
-            Self::Lower => [0x0C, 0],
-            Self::Left => [0x06, 1],
-            Self::Right => [0x06, 0],
-        }
-    }
-
-    /// The axis, 0 to 2, and its sign in this half.
-    pub fn axis(self) -> (usize, f64) {
-        match self {
-            Self::Forward => (0, 1.0),
-            Self::Aft => (0, -1.0),
-            Self::Upper => (2, -1.0),
-            Self::Lower => (2, 1.0),
-            Self::Left => (1, -1.0),
-            Self::Right => (1, 1.0),
-        }
-    }
-}
-
 impl Default for Config {
     fn default() -> Self {
         Self {
@@ -152,141 +112,5 @@ impl Default for Config {
             rotation_sigma_deg: 0.5,
             good_to_m: 0.762,
         }
-    }
-}
-
-/// A setting that cannot be.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("tracker_flock: {key} = {value}: {wanted}")]
-pub struct ConfigError {
-    /// The key.
-    pub key: &'static str,
-    /// What it holds.
-    pub value: String,
-    /// What it should hold.
-    pub wanted: &'static str,
-}
-
-/// The rates that the switches know.
-const BAUDS: [u32; 7] = [2400, 4800, 9600, 19200, 38400, 57600, 115_200];
-
-impl Config {
-    /// Refuses what a flock cannot do.
-    pub fn check(&self) -> Result<(), ConfigError> {
-        let refuse = |key, value: String, wanted| Err(ConfigError { key, value, wanted });
-        if self.port.as_os_str().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
-        }
-        if !BAUDS.contains(&self.baud) {
-            return refuse(
-                "baud",
-                self.baud.to_string(),
-                "2400, 4800, 9600, 19200, 38400, 57600 or 115200, as its switches",
-            );
-        }
-        let ascending = self.sensors.windows(2).all(|pair| pair[0] < pair[1]);
-        if !ascending || self.sensors.iter().any(|&address| address == 0 || address > self.addressing.most()) {
-            return refuse(
-                "sensors",
-                format!("{:?}", self.sensors),
-                "addresses from 1 on, ascending, within `addressing`",
-            );
-        }
-        if self.units > self.addressing.most() || (self.units != 0 && self.units < self.highest()) {
-            return refuse(
-                "units",
-                self.units.to_string(),
-                "at least the highest address of `sensors`, within `addressing`",
-            );
-        }
-        if !matches!(self.output, Format::PositionAngles | Format::PositionMatrix | Format::PositionQuaternion) {
-            return refuse("output", format!("{:?}", self.output), "a pose needs position and orientation");
-        }
-        if !matches!(self.line_frequency_hz, 50 | 60) {
-            return refuse("line_frequency_hz", self.line_frequency_hz.to_string(), "50 or 60");
-        }
-        if !matches!(self.report_every, 1 | 2 | 8 | 32) {
-            return refuse("report_every", self.report_every.to_string(), "1, 2, 8 or 32");
-        }
-        self.check_numbers()
-    }
-
-    fn check_numbers(&self) -> Result<(), ConfigError> {
-        let gains = [("dc_alpha_min", self.dc_alpha_min), ("dc_alpha_max", self.dc_alpha_max)];
-        let gains = gains.into_iter().flat_map(|(key, table)| {
-            table.into_iter().flatten().map(move |gain| (key, gain, 0.0, 0.99997, "gains from 0 to 0.99997"))
-        });
-        let latencies = [
-            ("position_latency_ms", self.position_latency_ms.unwrap_or(0.0), -100.0, 1000.0, "-100 to 1000 ms"),
-            ("rotation_latency_ms", self.rotation_latency_ms.unwrap_or(0.0), -100.0, 1000.0, "-100 to 1000 ms"),
-        ];
-        let others = [
-            ("rate_hz", self.rate_hz, 20.0, 144.0, "20 to 144"),
-            ("most_metal", f64::from(self.most_metal), 1.0, 127.0, "1 to 127"),
-            ("position_sigma_mm", self.position_sigma_mm, 1e-3, 1000.0, "0.001 to 1000 mm"),
-            ("rotation_sigma_deg", self.rotation_sigma_deg, 1e-3, 90.0, "0.001 to 90 degrees"),
-            ("good_to_m", self.good_to_m, 0.05, 10.0, "0.05 to 10 m"),
-        ];
-        for (key, value, least, most, wanted) in gains.chain(latencies).chain(others) {
-            if !(value >= least && value <= most) {
-                return Err(ConfigError { key, value: value.to_string(), wanted });
-            }
-        }
-        Ok(())
-    }
-
-    /// The addresses that are spoken to: 0 for a bird alone.
-    pub fn addresses(&self) -> Vec<u8> {
-        if self.sensors.is_empty() { vec![0] } else { self.sensors.clone() }
-    }
-
-    /// True when units answer together, each record with its address; false for a bird alone.
-    pub fn is_group(&self) -> bool {
-        !self.sensors.is_empty()
-    }
-
-    /// How many boxes the flock has; 0 for a bird alone.
-    pub fn unit_count(&self) -> u8 {
-        if self.units == 0 { self.highest() } else { self.units }
-    }
-
-    fn highest(&self) -> u8 {
-        self.sensors.last().copied().unwrap_or(0)
-    }
-
-    /// Data of parameter 3; none with the extended range transmitter.
-    pub(crate) fn scale_code(&self) -> Option<u16> {
-        match self.scale_inches {
-            Scale::Inches36 => Some(0),
-            Scale::Inches72 => Some(1),
-            Scale::Inches144 => None,
-        }
-    }
-
-    /// Data of parameter 4: filters that are off.
-    pub(crate) fn filters_off(&self) -> u16 {
-        u16::from(!self.ac_narrow_filter) << 2 | u16::from(!self.ac_wide_filter) << 1 | u16::from(!self.dc_filter)
-    }
-
-    /// Name, parameter and data of the tables of the adaptive filter that are to be changed.
-    pub(crate) fn filter_tables(&self) -> Vec<(&'static str, u8, [u16; 7])> {
-        let gains = |table: [f64; 7]| table.map(|gain| (gain * 32768.0).round() as u16);
-        let least = self.dc_alpha_min.map(|table| ("dc_alpha_min", 5, gains(table)));
-        let motion = self.dc_motion.map(|table| ("dc_motion", 12, table));
-        let most = self.dc_alpha_max.map(|table| ("dc_alpha_max", 13, gains(table)));
-        [least, motion, most].into_iter().flatten().collect()
-    }
-
-    /// How old position and rotation are when their record leaves, in nanoseconds.
-    pub fn latencies_nanos(&self) -> (i64, i64) {
-        const WIDE_CYCLES: f64 = 2.5;
-        const NARROW_CYCLES: f64 = 0.5;
-        let wide = if self.ac_wide_filter { WIDE_CYCLES } else { 0.0 };
-        let narrow = if self.ac_narrow_filter { NARROW_CYCLES } else { 0.0 };
-        let filters_ms = (wide + narrow) * 1e3 / self.rate_hz;
-        let nanos = |latency_ms: Option<f64>, unfiltered_ms| {
-            (latency_ms.unwrap_or(unfiltered_ms + filters_ms) * 1e6).round() as i64
-        };
-        (nanos(self.position_latency_ms, 7.5), nanos(self.rotation_latency_ms, 2.0))
     }
 }

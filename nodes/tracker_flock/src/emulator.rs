@@ -7,6 +7,7 @@
 
 mod answers;
 mod commands;
+mod power;
 mod unit;
 
 use crate::protocol::reading::QuaternionSense;
@@ -96,12 +97,14 @@ pub struct FlockEmulator {
     mood: Mood,
     units: Vec<Unit>,
     heard: Vec<u8>,
-    /// It carries out an auto-configuration, and hears nothing.
+    /// It starts up or carries out an auto-configuration, and hears nothing.
     busy_until: i64,
     configured: bool,
     group: bool,
     streaming: bool,
     held: bool,
+    /// RTS is high.
+    standby: bool,
     report_every: u64,
     rate_hz: f64,
     error: u8,
@@ -131,6 +134,7 @@ impl FlockEmulator {
             group: false,
             streaming: false,
             held: false,
+            standby: false,
             report_every: 1,
             cycle: 0,
             cycle_nanos: i64::MIN,
@@ -162,6 +166,7 @@ impl FlockEmulator {
             self.cycle_nanos += self.period_nanos();
             self.cycle += 1;
             match self.mood {
+                _ if self.standby || self.cycle_nanos < self.busy_until => {}
                 Mood::Silent => {}
                 Mood::Test if self.cycle.is_multiple_of((self.rate_hz as u64 / 2).max(1)) => {
                     self.speech.say(self.cycle_nanos, b"OK\r\n".to_vec());
@@ -201,7 +206,7 @@ impl FlockEmulator {
 
 impl Emulated for FlockEmulator {
     fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        if now_nanos < self.busy_until || self.mood != Mood::Well {
+        if now_nanos < self.busy_until || self.standby || self.mood != Mood::Well {
             return;
         }
         self.advance(now_nanos);

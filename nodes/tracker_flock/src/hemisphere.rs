@@ -1,26 +1,50 @@
 //! Which half of space a sensor is in.
 
-use crate::config::Hemisphere;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-/// A bird cannot tell a position from its mirror image through the transmitter, and always gives the one in the half
-/// that it was told. A hand does not jump through the transmitter: of the two the one nearer to the last is taken.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct HalfSpace {
-    last: Option<(i64, Vector3<f64>)>,
+/// Half of the space around the transmitter: x away from its cable, y to the right, z down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hemisphere {
+    /// +x.
+    #[default]
+    Forward,
+    /// -x.
+    Aft,
+    /// -z.
+    Upper,
+    /// +z.
+    Lower,
+    /// -y.
+    Left,
+    /// +y.
+    Right,
 }
 
-/// After a longer pause the hand may have been anywhere: the half that the bird was told is believed again.
-const PAUSE_NANOS: i64 = 500_000_000;
+impl Hemisphere {
+    /// Axis and sign as the commands have them.
+    pub fn code(self) -> [u8; 2] {
+        match self {
+            Self::Forward => [0x00, 0],
+            Self::Aft => [0x00, 1],
+            Self::Upper => [0x0C, 1],
+            Self::Lower => [0x0C, 0],
+            Self::Left => [0x06, 1],
+            Self::Right => [0x06, 0],
+        }
+    }
 
-impl HalfSpace {
-    /// The position as it is; true when it is in the other half.
-    pub fn follow(&mut self, nanos: i64, reported_m: Vector3<f64>) -> (Vector3<f64>, bool) {
-        let known = self.last.filter(|(at, _)| nanos.saturating_sub(*at) < PAUSE_NANOS);
-        let mirrored = known.is_some_and(|(_, last)| (last + reported_m).norm() < (last - reported_m).norm());
-        let position = if mirrored { -reported_m } else { reported_m };
-        self.last = Some((nanos, position));
-        (position, mirrored)
+    /// The axis, 0 to 2, and its sign in this half.
+    pub fn axis(self) -> (usize, f64) {
+        match self {
+            Self::Forward => (0, 1.0),
+            Self::Aft => (0, -1.0),
+            Self::Upper => (2, -1.0),
+            Self::Lower => (2, 1.0),
+            Self::Left => (1, -1.0),
+            Self::Right => (1, 1.0),
+        }
     }
 }
 

@@ -45,5 +45,7 @@ pub mod port;
 pub mod protocol;
 mod tracker;
 
-pub use config::{Config, ConfigError, Hemisphere};
+pub use config::Config;
+pub use hemisphere::Hemisphere;
+pub use serial_line::ConfigError;
 pub use tracker::{FlockTracker, Heard};

@@ -6,6 +6,7 @@ use crate::config::Config;
 use crate::protocol::address::addressed;
 use crate::protocol::commands::{self, POINT, XON};
 use crate::protocol::decoder::Decoder;
+use crate::protocol::modem;
 use crate::protocol::reading::{QuaternionSense, Reading, settle_sense};
 use crate::protocol::records::{Format, Layout, Record};
 use crate::tracker::Heard;
@@ -13,9 +14,6 @@ use examination::{Examination, Found};
 use serial_line::{Device, Heard as HeardAt, Line, LineSettings, Tally, Trouble};
 use std::time::Duration;
 
-/// The manual's times for a reset by RTS: high for so long, and quiet for so long behind it.
-const RESET_HIGH: Duration = Duration::from_secs(1);
-const START_UP: Duration = Duration::from_secs(2);
 /// Answers come within a cycle or two, at the slowest line within a few more.
 pub(crate) const ANSWER: Duration = Duration::from_millis(300);
 /// So often a still sensor is looked for when the quaternion's sense is not known.
@@ -27,14 +25,14 @@ pub struct Flock {
     layout: Layout,
     decoder: Decoder,
     sense: QuaternionSense,
-    tried_before: bool,
+    opened_before: bool,
 }
 
 impl Flock {
     /// The flock of a configuration that was checked.
     pub fn new(config: Config) -> Self {
         let layout = Layout { metal: config.metal, ..Layout::plain(config.output) };
-        Self { layout, decoder: Decoder::new(layout), sense: QuaternionSense::AsMatrix, tried_before: false, config }
+        Self { layout, decoder: Decoder::new(layout), sense: QuaternionSense::AsMatrix, opened_before: false, config }
     }
 
     /// How its port is opened.
@@ -44,17 +42,14 @@ impl Flock {
     }
 
     fn wake(&mut self, line: &mut Line) -> Result<(), Trouble> {
-        let wired = line.has_modem_lines();
-        if self.config.reset && wired {
-            line.set_rts(true);
-            line.pause(RESET_HIGH)?;
-            line.set_rts(false);
-            line.pause(START_UP)?;
-        } else if self.tried_before && wired {
-            // Systems raise RTS as they open a port: with a fully wired cable that has just reset the bird.
-            line.pause(START_UP)?;
+        let opened_before = std::mem::replace(&mut self.opened_before, true);
+        if !line.has_modem_lines() {
+            return Ok(());
         }
-        self.tried_before = true;
+        for step in modem::wake(self.config.reset, opened_before) {
+            line.set_rts(step.high || (self.config.raise_rts && !self.config.reset));
+            line.pause(step.wait)?;
+        }
         Ok(())
     }
 

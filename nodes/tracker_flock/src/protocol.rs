@@ -8,5 +8,6 @@ pub mod commands;
 pub mod decoder;
 pub mod errors;
 pub mod examine;
+pub mod modem;
 pub mod reading;
 pub mod records;

@@ -1,11 +1,12 @@
 //! Records to poses, each with its stamp and what is known of its error.
 
-use crate::config::{Config, ConfigError};
-use crate::hemisphere::HalfSpace;
+use crate::config::Config;
 use crate::protocol::reading::{NoReading, QuaternionSense, Reading};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::Vector3;
-use serial_line::{HELD_UP, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
+use serial_line::{
+    ConfigError, HELD_UP, HalfSpace, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos,
+};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 /// A record as the port heard it.
@@ -88,7 +89,8 @@ fn lost(reason: NoReading) -> Pose {
 
 fn measured(config: &Config, bird: &mut Bird, reading: Reading, stamp_nanos: i64) -> Pose {
     let reported = reading.position_m.unwrap_or_default();
-    let position = if config.follow_hemisphere { bird.half.follow(stamp_nanos, reported).0 } else { reported };
+    let followed = |half: &mut HalfSpace| half.follow(stamp_nanos, reported.into()).into();
+    let position = if config.follow_hemisphere { followed(&mut bird.half) } else { reported };
     let rotation = reading.rotation.unwrap_or_default();
     let growth = far_away(config, &position);
     Pose {

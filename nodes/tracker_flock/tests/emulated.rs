@@ -238,6 +238,11 @@ fn what_is_missing_in_the_flock_is_named() {
     let rig = listen(on(&alone), clock);
     assert!(rig.streaming().contains("no sensor"), "an error that was reported is told");
     drop(rig);
+    let near =
+        plugged(EmulatorConfig { error: 32, ..EmulatorConfig::default() }, FaultsConfig::default(), swing, None, clock);
+    let rig = listen(on(&near), clock);
+    assert!(rig.streaming().contains("the sensor is saturated: it is too near the transmitter"));
+    drop(rig);
     let fatal =
         plugged(EmulatorConfig { error: 1, ..EmulatorConfig::default() }, FaultsConfig::default(), swing, None, clock);
     assert!(listen(on(&fatal), clock).trouble().contains("needs repair"));

@@ -117,6 +117,8 @@ fn what_is_no_measurement_is_refused() {
     assert_eq!(read(&record(Format::PositionAngles, &[0; 6])), Err(NoReading::Zeros));
     assert_eq!(read(&record(Format::PositionAngles, &[32764, 1, 1, 1, 1, 1])), Err(NoReading::FullScale));
     assert_eq!(read(&record(Format::PositionAngles, &[1, -32768, 1, 1, 1, 1])), Err(NoReading::FullScale));
+    assert!(NoReading::Zeros.to_string().contains("too near the transmitter, or it is not plugged in"));
+    assert!(NoReading::FullScale.to_string().contains("bring the sensor nearer, or choose a larger scale"));
     assert_eq!(read(&record(Format::PositionAngles, &[1, 1, 1, 1, 20000, 1])), Err(NoReading::NoRotation));
     assert_eq!(read(&record(Format::PositionMatrix, &[100; 12])), Err(NoReading::NoRotation));
     assert_eq!(read(&record(Format::Quaternion, &[100; 4])), Err(NoReading::NoRotation));

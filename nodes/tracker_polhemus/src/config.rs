@@ -2,6 +2,7 @@
 
 use crate::protocol::records::Family;
 use serde::{Deserialize, Serialize};
+use serial_line::ConfigError;
 use std::path::PathBuf;
 
 /// Settings of the line, of the device, and of its poses. What is none is the family's own.
@@ -16,8 +17,11 @@ pub struct Config {
     pub family: Family,
     /// Stations with a sensor, ascending, from 1.
     pub stations: Vec<u8>,
-    /// A vector from the source into the half of space where the sensors are; [0, 0, 0]: the device follows by itself.
+    /// A vector from the source into the half of space where the sensors are when the node starts; [0, 0, 0]: the device
+    /// follows by itself.
     pub hemisphere: [f64; 3],
+    /// Follow a sensor into the other half of space, by continuity.
+    pub follow_hemisphere: bool,
     /// The device's own adaptive filter, at the maker's suggestion of 0.2, 0.2, 0.8, 0.8.
     pub filter: bool,
     /// Records a second from each station: 120 shared among the stations of a Fastrak, 60 Patriot, 240 or 120 Liberty
@@ -47,6 +51,7 @@ impl Default for Config {
             family: Family::Liberty,
             stations: vec![1],
             hemisphere: [1.0, 0.0, 0.0],
+            follow_hemisphere: true,
             filter: false,
             rate_hz: None,
             scan_clock: false,
@@ -57,18 +62,6 @@ impl Default for Config {
             most_distortion: 100,
         }
     }
-}
-
-/// A setting that cannot be.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("tracker_polhemus: {key} = {value}: {wanted}")]
-pub struct ConfigError {
-    /// The key.
-    pub key: &'static str,
-    /// What it holds.
-    pub value: String,
-    /// What it should hold.
-    pub wanted: &'static str,
 }
 
 /// What the data sheets say.
@@ -86,13 +79,14 @@ pub struct DataSheet {
     pub good_to_m: f64,
 }
 
+const NODE: &str = "tracker_polhemus";
 /// The rates that the devices have.
 const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19_200, 38_400, 57_600, 115_200];
 
 impl Config {
     /// Refuses what the device cannot do.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let refuse = |key, value: String, wanted| Err(ConfigError { key, value, wanted });
+        let refuse = |key, value: String, wanted| Err(ConfigError { node: NODE, key, value, wanted });
         if self.port.as_os_str().is_empty() {
             return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
         }
@@ -115,16 +109,14 @@ impl Config {
             return refuse("most_distortion", self.most_distortion.to_string(), "at least 1");
         }
         let sheet = self.sheet();
-        for (key, value, least, most, wanted) in [
+        for range in [
             ("rate_hz", sheet.rate_hz, 1.0, 1000.0, "1 to 1000"),
             ("latency_ms", sheet.latency_ms, -100.0, 1000.0, "-100 to 1000 ms"),
             ("position_sigma_mm", sheet.position_sigma_mm, 1e-3, 1000.0, "0.001 to 1000 mm"),
             ("rotation_sigma_deg", sheet.rotation_sigma_deg, 1e-3, 90.0, "0.001 to 90 degrees"),
             ("good_to_m", sheet.good_to_m, 0.05, 10.0, "0.05 to 10 m"),
         ] {
-            if !(value >= least && value <= most) {
-                return refuse(key, value.to_string(), wanted);
-            }
+            ConfigError::unless_within(NODE, range)?;
         }
         Ok(())
     }

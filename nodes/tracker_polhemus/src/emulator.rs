@@ -1,7 +1,10 @@
 //! A Fastrak, Liberty or Patriot that is played, byte for byte: commands in, records and answers out, each with its time.
 //! No port and no clock of its own; `serial_line::Pty` puts it behind a pseudo-terminal.
 
+mod commands;
+
 use crate::protocol::records::{Family, Item, Layout, Record, encode};
+use commands::next_command;
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{Emulated, Speech};
 
@@ -27,6 +30,8 @@ pub struct EmulatorConfig {
     pub distortion: i32,
     /// What it says of each station: a space when all is well.
     pub error: u8,
+    /// It changes its mind so often about the half of space that its sensors are in; 0 is never.
+    pub flip_every_nanos: i64,
 }
 
 impl EmulatorConfig {
@@ -42,6 +47,7 @@ impl EmulatorConfig {
             clock_rate: 1.0,
             distortion: 0,
             error: b' ',
+            flip_every_nanos: 0,
         }
     }
 }
@@ -68,6 +74,8 @@ pub struct PolhemusEmulator {
     heard: Vec<u8>,
     layouts: Vec<Layout>,
     active: Vec<bool>,
+    /// Of each station; none: it follows by itself.
+    hemispheres: Vec<Vector3<f64>>,
     binary: bool,
     centimetres: bool,
     continuous: bool,
@@ -85,6 +93,7 @@ impl PolhemusEmulator {
         Self {
             layouts: vec![layout; stations],
             active: vec![true; stations],
+            hemispheres: vec![Vector3::x(); stations],
             speech: Speech::new(config.baud),
             config,
             world,
@@ -102,50 +111,6 @@ impl PolhemusEmulator {
     /// Makes it ill, or well again.
     pub fn set_mood(&mut self, mood: Mood) {
         self.mood = mood;
-    }
-
-    fn obey(&mut self, command: &str, now: i64) {
-        let fastrak = self.config.family == Family::Fastrak;
-        let mut letters = command.chars();
-        let (letter, rest) = (letters.next().unwrap_or('\r'), letters.as_str());
-        let mut numbers = rest.split(',').map(|number| number.trim().parse::<i64>().unwrap_or(-1));
-        match letter {
-            'c' if fastrak => self.continuous = false,
-            'C' => self.continuous = true,
-            'P' => {
-                self.continuous = false;
-                self.report(now);
-            }
-            'f' if fastrak => self.binary = true,
-            'F' => self.binary = rest == "1",
-            'U' if fastrak => self.centimetres = false,
-            'u' if fastrak => self.centimetres = true,
-            'U' => self.centimetres = rest == "1",
-            'Q' => self.clock_zero_nanos = now,
-            'S' if fastrak => {
-                let flags = u8::from(self.binary) | u8::from(self.centimetres) << 1 | u8::from(self.continuous) << 3;
-                let name = format!("2 S{flags:03X}000      3.01  {:<32}\r\n", "3SPACE FASTRAK, emulated");
-                self.speech.say(now, name.into_bytes());
-            }
-            '\x16' => {
-                let name = if self.config.family == Family::Patriot { "Patriot" } else { "Liberty" };
-                self.speech.say(now, format!("{:<194}\r\n", format!("0 Polhemus {name}, emulated")).into_bytes());
-            }
-            'l' if fastrak => {
-                let (station, on) = (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0));
-                if let Some(active) = self.active.get_mut((station - 1).max(0) as usize) {
-                    *active = on == 1;
-                }
-            }
-            'O' => {
-                let station = numbers.next().unwrap_or(0);
-                let items = numbers.filter_map(|code| item_of(code, self.config.family)).collect();
-                if let Some(layout) = self.layouts.get_mut((station - 1).max(0) as usize) {
-                    layout.items = items;
-                }
-            }
-            _ => {}
-        }
     }
 
     /// Lets the frames go by that have ended by now.
@@ -177,6 +142,7 @@ impl PolhemusEmulator {
             }
             let measured = at_nanos - self.config.latency_nanos;
             let (position, rotation) = (self.world)(station, measured);
+            let position = self.reported(index, position, at_nanos);
             let unit = if self.centimetres { CENTIMETRE_M } else { INCH_M };
             let (roll, elevation, azimuth) = rotation.euler_angles();
             let ticks = (measured - self.clock_zero_nanos) as f64 * self.config.clock_rate * 1e-6;
@@ -197,6 +163,16 @@ impl PolhemusEmulator {
     }
 }
 
+impl PolhemusEmulator {
+    /// The position in the half of space that the station was told, or in the other one when it has changed its mind.
+    fn reported(&self, index: usize, position: Vector3<f64>, nanos: i64) -> Vector3<f64> {
+        let mirrored = self.hemispheres[index].dot(&position) < 0.0;
+        let every = self.config.flip_every_nanos;
+        let flipped = every > 0 && (nanos / every) % 2 != 0;
+        if mirrored != flipped { -position } else { position }
+    }
+}
+
 impl Emulated for PolhemusEmulator {
     fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
         if self.mood != Mood::Well {
@@ -214,38 +190,6 @@ impl Emulated for PolhemusEmulator {
         self.advance(now_nanos);
         self.speech.leave(now_nanos)
     }
-}
-
-/// The first whole command, and how many bytes it has. A Fastrak knows many of its commands by their letter; what has
-/// arguments ends with CR.
-fn next_command(heard: &[u8], family: Family) -> Option<(String, usize)> {
-    let first = *heard.first()?;
-    let alone = match family {
-        Family::Fastrak => b"PcCfFUuSWYt\x19\x0B\r".contains(&first),
-        // A single record is the one command that does not wait for CR.
-        _ => matches!(first, b'P' | b'\r'),
-    };
-    if alone {
-        return Some((char::from(first).to_string(), 1));
-    }
-    let end = heard.iter().position(|&byte| byte == b'\r')?;
-    Some((String::from_utf8_lossy(&heard[..end]).into_owned(), end + 1))
-}
-
-fn item_of(code: i64, family: Family) -> Option<Item> {
-    const ALL: [Item; 10] = [
-        Item::Space,
-        Item::CrLf,
-        Item::Position,
-        Item::PositionPrecise,
-        Item::Euler,
-        Item::Quaternion,
-        Item::TimeStamp,
-        Item::FrameCount,
-        Item::Stylus,
-        Item::Distortion,
-    ];
-    ALL.into_iter().find(|item| item.code(family).map(i64::from) == Some(code))
 }
 
 /// A record as it is sent until the host asks for binary ones.

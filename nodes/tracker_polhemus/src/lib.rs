@@ -38,5 +38,6 @@ pub mod port;
 pub mod protocol;
 mod tracker;
 
-pub use config::{Config, ConfigError, DataSheet};
+pub use config::{Config, DataSheet};
+pub use serial_line::ConfigError;
 pub use tracker::PolhemusTracker;

@@ -1,9 +1,12 @@
 //! Records to poses, each with its stamp and what is known of its error.
 
-use crate::config::{Config, ConfigError, DataSheet};
+use crate::config::{Config, DataSheet};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use serial_line::{DeviceClock, HELD_UP, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed, wire_nanos};
+use serial_line::{
+    ConfigError, DeviceClock, HELD_UP, HalfSpace, PoseTracker, RateLock, Rounds, SensorPose, Turn, Undelayed,
+    wire_nanos,
+};
 use wire::{Clock, Header, Pose, Quality, RigidPose};
 
 const INCH_M: f64 = 0.0254;
@@ -18,6 +21,7 @@ pub struct PolhemusTracker {
     record_bytes: usize,
     rounds: Rounds,
     clocks: Vec<StationClock>,
+    halves: Vec<HalfSpace>,
 }
 
 #[derive(Debug, Clone)]
@@ -38,8 +42,9 @@ impl PolhemusTracker {
             false => StationClock::Rate(RateLock::new(Some(1e9 / sheet.rate_hz))),
         };
         let clocks = config.stations.iter().map(clock).collect();
+        let halves = vec![HalfSpace::default(); config.stations.len()];
         let (rounds, record_bytes) = (Rounds::new(&config.stations), Layout::of(config.family).bytes());
-        Ok(Self { rounds, clocks, record_bytes, sheet, config })
+        Ok(Self { rounds, clocks, halves, record_bytes, sheet, config })
     }
 }
 
@@ -58,6 +63,10 @@ impl PoseTracker for PolhemusTracker {
         let old = (self.sheet.latency_ms * 1e6) as i64;
         let stamp_nanos = undelayed.map_or(arrival_nanos, |undelayed| undelayed.nanos) - wire - old;
         let mut pose = measured(record);
+        if self.config.follow_hemisphere {
+            let reported = pose.world_from_body.translation_m;
+            pose.world_from_body.translation_m = self.halves[sensor].follow(stamp_nanos, reported);
+        }
         pose.header = Header { stamp_nanos, clock: Clock::System, ..Header::default() };
         self.judge(&mut pose, record, undelayed);
         Some(SensorPose { sensor, pose, removed_nanos: arrival_nanos - stamp_nanos })

@@ -5,7 +5,7 @@
 #[path = "../../serial_line/tests/harness/play.rs"]
 mod harness;
 
-use harness::{pendulum, play, rms, stamp_errors_ms};
+use harness::{metres, pendulum, play, rms, stamp_errors_ms};
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{FaultsConfig, SensorPose};
 use tracker_polhemus::emulator::{EmulatorConfig, PolhemusEmulator, World};
@@ -95,6 +95,43 @@ fn lost_bytes_cost_the_records_they_are_in_and_no_stamp() {
         let errors = stamp_errors_ms(poses[300..].iter().filter(|pose| pose.pose.quality == Quality::Good));
         let wrong = errors.iter().filter(|ms| **ms > 2.0).count();
         assert!(errors.len() > 1900 && wrong * 100 < errors.len(), "{family:?}: {wrong} of {}", errors.len());
+    }
+}
+
+#[test]
+fn a_sensor_is_followed_into_the_other_half_of_space() {
+    let through = |nanos: i64| {
+        let t = nanos as f64 * 1e-9;
+        Vector3::new(0.3 * (1.5 * t).cos(), 0.2, 0.1 + 0.1 * t.sin())
+    };
+    for family in [Family::Fastrak, Family::Liberty] {
+        let play = |config: &Config| played(config, EmulatorConfig::of(family), FaultsConfig::default(), 10, through);
+        let off = |pose: &SensorPose| (metres(pose) - through(pose.pose.header.stamp_nanos)).norm();
+        let poses = play(&config(family, &[1]));
+        assert!(poses[50..].iter().all(|pose| off(pose) < 1e-3), "{family:?}");
+        assert!(poses.iter().any(|pose| metres(pose).x < -0.25), "{family:?}");
+        let as_told = play(&Config { follow_hemisphere: false, ..config(family, &[1]) });
+        assert!(as_told.iter().all(|pose| metres(pose).x > -1e-3), "{family:?}: as the device has it");
+        let by_itself = Config { follow_hemisphere: false, hemisphere: [0.0; 3], ..config(family, &[1]) };
+        assert!(play(&by_itself)[50..].iter().all(|pose| off(pose) < 1e-3), "{family:?}: the device follows by itself");
+    }
+}
+
+#[test]
+fn a_device_that_changes_its_mind_about_the_half_of_space_is_not_believed() {
+    for family in [Family::Fastrak, Family::Liberty] {
+        let emulator = EmulatorConfig { flip_every_nanos: 700_000_000, ..EmulatorConfig::of(family) };
+        let off = |pose: &SensorPose| (metres(pose) - pendulum(pose.pose.header.stamp_nanos)).norm();
+        let poses = played(&config(family, &[1]), emulator.clone(), FaultsConfig::default(), 10, pendulum);
+        assert!(poses[50..].iter().all(|pose| off(pose) < 2e-3), "{family:?}");
+        let as_told = Config { follow_hemisphere: false, ..config(family, &[1]) };
+        let poses = played(&as_told, emulator, FaultsConfig::default(), 10, pendulum);
+        let flipped = poses.iter().filter(|pose| off(pose) > 0.1).count();
+        assert!(
+            (4 * poses.len()..6 * poses.len()).contains(&(10 * flipped)),
+            "{family:?}: {flipped} of {}",
+            poses.len()
+        );
     }
 }
 

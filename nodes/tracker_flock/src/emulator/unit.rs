@@ -1,8 +1,7 @@
 //! One bird of the flock: its settings, and what it measures.
 
 use super::EmulatorConfig;
-use crate::config::Hemisphere;
-use crate::hemisphere::reported;
+use crate::hemisphere::{Hemisphere, reported};
 use crate::protocol::reading::{Scale, words_of};
 use crate::protocol::records::{Format, Layout, Record};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -2,7 +2,8 @@
 
 use super::address::addressed;
 use super::records::Format;
-use crate::config::{Config, Hemisphere};
+use crate::config::Config;
+use crate::hemisphere::Hemisphere;
 use serial_line::Step;
 use std::time::Duration;
 
