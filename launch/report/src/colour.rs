@@ -69,11 +69,7 @@ struct Cell {
 pub fn colour_error(model: &wire::Model, truth: &LoadedMesh) -> Result<ColourError, ColourErrorReason> {
     let mesh = TriangleMesh { uv: model.uv.to_vec(), ..TriangleMesh::from(&model.mesh) };
     mesh.check().map_err(ColourErrorReason::Model)?;
-    let (width, height, cells) = (model.texture_width, model.texture_height, model.texture.len());
-    if u64::from(width) * u64::from(height) != cells as u64 || mesh.uv.len() != mesh.vertices.len() {
-        let (uv, vertices) = (mesh.uv.len(), mesh.vertices.len());
-        return Err(ColourErrorReason::Texture { width, height, cells, uv, vertices });
-    }
+    check_texture(model)?;
     if truth.texture.is_none() && truth.mesh.colours.is_empty() {
         return Err(ColourErrorReason::TruthWithoutColours);
     }
@@ -81,6 +77,16 @@ pub fn colour_error(model: &wire::Model, truth: &LoadedMesh) -> Result<ColourErr
     let on_triangle = |t: usize| cells_of(model, &mesh, t, |point| true_colour(&index, truth, point));
     let cells: Vec<Cell> = (0..mesh.triangles.len()).into_par_iter().flat_map_iter(on_triangle).collect();
     if cells.is_empty() { Err(ColourErrorReason::NothingSeen) } else { Ok(summarise(&cells)) }
+}
+
+/// Refuses a texture that cannot be read.
+pub(crate) fn check_texture(model: &wire::Model) -> Result<(), ColourErrorReason> {
+    let (width, height, cells) = (model.texture_width, model.texture_height, model.texture.len());
+    let (uv, vertices) = (model.uv.len(), model.mesh.vertices_m.len());
+    if u64::from(width) * u64::from(height) != cells as u64 || uv != vertices {
+        return Err(ColourErrorReason::Texture { width, height, cells, uv, vertices });
+    }
+    Ok(())
 }
 
 fn true_colour(index: &MeshIndex, truth: &LoadedMesh, point: Point3<f64>) -> Option<[f32; 3]> {

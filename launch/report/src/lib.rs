@@ -4,7 +4,7 @@
 //! ([`Report::write_json`]) and report.html ([`Report::write_html`]), one file that needs no network: pictures from four
 //! sides, the error as colours on the model, its histogram, tables of times, losses and refusals.
 //!
-//! The numbers come from [`geometry::compare`] (shape), [`colour_error`] (colours) and [`seen_mask`] (what of the truth
+//! The numbers come from [`geometry::compare`] (shape), [`colour_error`] (colours), [`border_error`] (their borders) and [`seen_mask`] (what of the truth
 //! the camera could see at all). Lengths are metres, world frame, z up; millimetres on the page. The same input gives the
 //! same bytes.
 //!
@@ -19,6 +19,7 @@
 //! ```
 
 mod albedo;
+mod border;
 mod colour;
 mod data_uri;
 mod error_map;
@@ -31,6 +32,7 @@ mod view;
 mod write;
 
 pub use albedo::{albedo, painted};
+pub use border::{BorderError, border_error};
 pub use colour::{ColourError, ColourErrorReason, colour_error};
 pub use render::render;
 pub use seen::{Gate, seen_mask};

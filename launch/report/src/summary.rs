@@ -1,6 +1,6 @@
 //! What is told of a run: plain numbers, as they stand in report.json.
 
-use crate::{ColourError, StatedError};
+use crate::{BorderError, ColourError, StatedError};
 use geometry::Comparison;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +30,8 @@ pub struct Report {
     pub stated: Option<StatedError>,
     /// The colours against the truth's albedo.
     pub colour: Option<ColourError>,
+    /// Where the borders between colours lie, against the truth's.
+    pub borders: Option<BorderError>,
     /// What failed, in sentences.
     pub failures: Vec<String>,
 }

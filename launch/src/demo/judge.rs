@@ -127,6 +127,8 @@ impl Bench {
             Ok(error) => report.colour = Some(error),
             Err(reason) => report.failures.push(reason.to_string()),
         }
+        // What cannot be compared was told above.
+        report.borders = report::border_error(&laid, &self.truth).ok().flatten();
         let mut shown = report::painted(model);
         move_by(&mut shown.mesh, onto);
         shown

@@ -53,6 +53,12 @@ pub fn print(report: &Report, out: &Path) -> Result<()> {
     if let Some(colour) = &report.colour {
         row("colour against albedo", format!("rms {:.1} of 255", colour.rms_255));
     }
+    if let Some(borders) = &report.borders {
+        let (rms, median, p95) = (borders.rms_mm, borders.median_mm, borders.p95_mm);
+        row("borders of colour", format!("rms {rms:.3} mm, median {median:.3}, 95 % {p95:.3}"));
+        let (places, lost, unseen) = (borders.places, borders.lost, borders.unseen);
+        row("places on them", format!("{places} judged, {lost} without a border, {unseen} not seen"));
+    }
     for time in &report.times {
         row(&time.what, format!("{:.1} s", time.seconds));
     }

@@ -85,6 +85,9 @@ fn accuracy(report: &Report, end_mm: f64) -> String {
             ],
         ));
     }
+    if let Some(borders) = &report.borders {
+        text.push_str(&tables::borders(borders));
+    }
     text
 }
 

@@ -1,7 +1,7 @@
 //! The numbers, as tables and as the row of figures at the head of the page.
 
 use super::text::{count, escape, known, number, percent};
-use crate::{Aligned, Refined, Report, Stage, StatedError};
+use crate::{Aligned, BorderError, Refined, Report, Stage, StatedError};
 use geometry::{Comparison, Completeness};
 use std::fmt::Write as _;
 
@@ -93,6 +93,22 @@ pub fn stated(stated: &StatedError) -> String {
             ("closer to the truth than one of it (68 % if it is honest)", percent(stated.within_one)),
             ("closer than two (95 %)", percent(stated.within_two)),
             ("vertices that state one", count(stated.vertices as u64)),
+        ],
+    )
+}
+
+/// Where the borders between colours lie.
+pub fn borders(borders: &BorderError) -> String {
+    facts(
+        "Borders between patches of colour against those of the truth: how far apart the half-way colours are, across the \
+         border",
+        &[
+            ("root mean square", format!("{} mm", number(borders.rms_mm))),
+            ("median", format!("{} mm", number(borders.median_mm))),
+            ("95 %", format!("{} mm", number(borders.p95_mm))),
+            ("places judged", count(borders.places as u64)),
+            ("places where the model has no such border", count(borders.lost as u64)),
+            ("places that no picture saw", count(borders.unseen as u64)),
         ],
     )
 }
