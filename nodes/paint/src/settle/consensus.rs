@@ -115,6 +115,20 @@ impl Witnesses {
         Self { from, places }
     }
 
+    /// The weighted mean over the views at each point, of what they have in each of their places; 0 where nothing weighs.
+    pub fn means(&self, value: impl Fn(usize, usize) -> ([f32; 3], f32) + Sync) -> Vec<[f32; 3]> {
+        let of_point = |range: &[u32]| {
+            let (mut sum, mut total) = ([0.0; 3], 0.0);
+            for &[view, at] in &self.places[range[0] as usize..range[1] as usize] {
+                let (value, weight) = value(view as usize, at as usize);
+                total += weight;
+                (0..3).for_each(|c| sum[c] += weight * value[c]);
+            }
+            if total > 0.0 { sum.map(|sum| sum / total) } else { [0.0; 3] }
+        };
+        self.from.par_windows(2).map(of_point).collect()
+    }
+
     /// What each point is agreed to be, from what each view says in each of its places (not a number: nothing).
     pub fn agree(&self, views: &[View], said: &[Vec<[f32; 3]>]) -> Vec<Agreed> {
         let of_point = |range: &[u32]| {

@@ -3,6 +3,7 @@
 
 use crate::settle::consensus::Agreed;
 use crate::settle::level::Level;
+use crate::settle::together::{Slot, Unknowns};
 use crate::settle::view::{View, moved};
 use geometry::Camera;
 use nalgebra::{Point2, Point3, SMatrix, SVector, Vector3, Vector6};
@@ -22,7 +23,9 @@ pub struct Comparison<'a> {
     pub level: &'a Level,
     pub points: &'a [Point3<f64>],
     pub view: &'a View,
-    /// In the order of `view.seen`.
+    /// What all views say of each point.
+    pub agreed: &'a [Agreed],
+    /// What the others say, in the order of `view.seen`.
     pub others: Vec<Option<[f32; 3]>>,
 }
 
@@ -37,12 +40,21 @@ pub struct Agreement {
     pub points: usize,
 }
 
+/// The precision of each unknown of a view: its correction, then its gain.
+pub fn precision(prior: &Prior) -> Unknowns {
+    let [shift, turn] = [prior.shift_m, prior.turn_rad].map(|sigma| sigma.powi(-2));
+    let [gain, along_u, along_v] = GAIN_SIGMA.map(|sigma| sigma.powi(-2));
+    Unknowns::from([shift, shift, shift, turn, turn, turn, gain, along_u, along_v])
+}
+
 /// One point: what is said and what the others say, in each channel.
+#[derive(Clone, Copy)]
 struct Row {
     says: Vector3<f64>,
     others: Vector3<f64>,
     /// 1, and how far the point is from the optical axis: light that is not known well changes slowly over the picture.
     place: Vector3<f64>,
+    p_in_camera: Vector3<f64>,
     slopes: SMatrix<f64, 3, 6>,
     weight: f64,
 }
@@ -69,11 +81,26 @@ impl<'a> Comparison<'a> {
         level: &'a Level,
         points: &'a [Point3<f64>],
         view: &'a View,
-        (agreed, said): (&[Agreed], &[[f32; 3]]),
+        (agreed, said): (&'a [Agreed], &[[f32; 3]]),
     ) -> Self {
         let others =
             view.seen.iter().zip(said).map(|(seen, said)| agreed[seen.point as usize].without(said, seen.weight));
-        Self { camera, level, points, view, others: others.collect() }
+        Self { camera, level, points, view, agreed, others: others.collect() }
+    }
+
+    /// How the view as it stands differs from what all say, itself too, in the order of what it sees; and the gain under
+    /// which it agrees best. Silent when it sees too little.
+    pub fn linear(&self, white: f64) -> (Vec<Slot>, Gain) {
+        let all: Vec<_> = self.view.seen.iter().map(|seen| self.agreed[seen.point as usize].mean()).collect();
+        let rows = self.each_row(&self.view.correction, &all);
+        let known: Vec<Row> = rows.iter().flatten().copied().collect();
+        if known.len() < POINTS_MIN {
+            return (vec![Slot::SILENT; rows.len()], Gain::zeros());
+        }
+        let scale = scale_of(&known, white);
+        let gain = gain_of(&known, scale);
+        let slot = |row: &Option<Row>| row.as_ref().map_or(Slot::SILENT, |row| row.slot(&gain, scale));
+        (rows.iter().map(slot).collect(), gain)
     }
 
     /// The correction that agrees best; the one that the view has where nothing better is found.
@@ -124,6 +151,11 @@ impl<'a> Comparison<'a> {
     }
 
     fn rows(&self, correction: &Vector6<f64>) -> Vec<Row> {
+        self.each_row(correction, &self.others).into_iter().flatten().collect()
+    }
+
+    /// In the order of what the view sees; `None` where it or those that it is compared with say nothing.
+    fn each_row(&self, correction: &Vector6<f64>, others: &[Option<[f32; 3]>]) -> Vec<Option<Row>> {
         let correction = moved(correction);
         let camera_from_world = correction * self.view.camera_from_world;
         let row = |(seen, others): (&crate::settle::view::Seen, &Option<[f32; 3]>)| {
@@ -140,11 +172,12 @@ impl<'a> Comparison<'a> {
                 says: Vector3::from_fn(|c, _| f64::from(shown.value[c] * seen.scale[c])),
                 others: Vector3::from(others).cast(),
                 place: Vector3::new(1.0, p.x / p.z, p.y / p.z),
+                p_in_camera: p.coords,
                 slopes,
                 weight: f64::from(seen.weight.min(1.0)),
             })
         };
-        self.view.seen.iter().zip(&self.others).filter_map(row).collect()
+        self.view.seen.iter().zip(others).map(row).collect()
     }
 }
 
@@ -160,6 +193,17 @@ fn slope_of_pose(camera: &Camera, p: &Point3<f64>, [along_u, along_v]: [f64; 2])
 impl Row {
     fn difference(&self, gain: &Gain) -> Vector3<f64> {
         self.says - self.others * (1.0 + gain.dot(&self.place))
+    }
+
+    fn slot(&self, gain: &Gain, scale: f64) -> Slot {
+        let difference = self.difference(gain);
+        Slot {
+            p_in_camera: self.p_in_camera.cast(),
+            slopes: std::array::from_fn(|c| self.slopes.fixed_view::<1, 3>(c, 0).transpose().cast()),
+            agreed: self.others.cast().into(),
+            difference: difference.cast().into(),
+            weight: (self.weight * robust(&difference, scale) / (scale.powi(2) * ERR_TOGETHER)) as f32,
+        }
     }
 }
 

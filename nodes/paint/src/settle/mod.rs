@@ -4,7 +4,8 @@
 //! in the laser's, which alone tell the way. So its pose errs by several pixels, and colours blur. The cure is that of Zhou
 //! & Koltun 2014, "Color map optimization": in turn, what the pictures agree on for each point of the surface
 //! ([`consensus`]), and for each picture the small correction after which it says what the others say ([`fit`]); coarse
-//! pictures first ([`level`]). Only points near borders between colours take part ([`detail`]), and each correction is
+//! pictures first ([`level`]). What many pictures err in common hardly moves that way, so at last all are corrected at once
+//! ([`together`]). Only points near borders between colours take part ([`detail`]), and each correction is
 //! held by its prior: where nothing is to be seen, nothing moves.
 
 mod consensus;
@@ -13,6 +14,7 @@ mod fit;
 mod level;
 mod round;
 mod see;
+mod together;
 mod verdict;
 mod view;
 
@@ -20,9 +22,9 @@ use crate::Picture;
 use crate::painter::Painter;
 use consensus::Witnesses;
 use fit::Prior;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector6};
 use round::Round;
-use view::keep;
+use view::{View, keep};
 use wire::Refusal;
 
 /// What came of settling the pictures.
@@ -67,8 +69,10 @@ impl SettleRefusal {
 /// A picture, and world_from_camera as its trajectory has it.
 pub type Shot<'a> = (&'a Picture, Isometry3<f64>);
 
-/// One round each, by pictures made smaller by this factor: poses err by up to ten pixels.
-const ROUNDS: [usize; 6] = [8, 4, 4, 2, 2, 2];
+/// One round each, view by view, by pictures made smaller by this factor: poses err by up to ten pixels.
+const ROUNDS: [usize; 4] = [8, 4, 4, 2];
+/// Then so many steps of all views at once, by the finest pictures.
+const STEPS_TOGETHER: usize = 3;
 /// By which corrections are judged.
 const FINEST: usize = 2;
 
@@ -81,21 +85,27 @@ impl Painter {
             turn_rad: self.config.settle_turn_degrees.to_radians(),
         };
         let (points, mut views) = self.views(shots, &prior);
-        let round = Round { painter: self, shots, points: &points };
-        let mut witnesses = Witnesses::of(&views, points.len());
-        let agreed = witnesses.agree(&views, &round.said(&views, ROUNDS[0]));
-        let detailed = detail::with_detail(&points, &agreed, consensus::white(&agreed));
+        let round = |views: &[View], factor| Round::new(self, shots, &points, views, factor);
+        let mut witnesses = Witnesses::of(&views, points.places.len());
+        let agreed = witnesses.agree(&views, &round(&views, ROUNDS[0]).said(&views));
+        let detailed = detail::with_detail(&points.places, &agreed, consensus::white(&agreed));
         views.iter_mut().for_each(|view| keep(&mut view.seen, &detailed));
-        witnesses = Witnesses::of(&views, points.len());
+        witnesses = Witnesses::of(&views, points.places.len());
 
-        let before = round.compared(&views, &witnesses, FINEST, verdict::apart);
         for factor in ROUNDS {
             let settled = |comparison: &fit::Comparison<'_>, white| comparison.settle(&prior, white);
-            let corrections = round.compared(&views, &witnesses, factor, settled);
-            views.iter_mut().zip(corrections).for_each(|(view, correction)| view.correction = correction);
+            let corrections = round(&views, factor).compared(&views, &witnesses, settled);
+            correct(&mut views, corrections);
+        }
+        let finest = round(&views, FINEST);
+        for _ in 0..STEPS_TOGETHER {
+            let corrections = finest.together(&views, &witnesses, &prior);
+            correct(&mut views, corrections);
         }
         let judged = |comparison: &fit::Comparison<'_>, white| verdict::of(comparison, white, &prior);
-        let verdicts = round.compared(&views, &witnesses, FINEST, judged);
+        let verdicts = finest.compared(&views, &witnesses, judged);
+        let as_they_came: Vec<View> = views.iter().map(View::as_it_came).collect();
+        let before = finest.compared(&as_they_came, &witnesses, verdict::apart);
         let settled =
             shots.iter().zip(&views).zip(&verdicts).map(|(((_, pose), view), verdict)| match verdict.refusal {
                 Some(_) => *pose,
@@ -103,4 +113,8 @@ impl Painter {
             });
         (settled.collect(), verdict::summary(&views, &before, &verdicts))
     }
+}
+
+fn correct(views: &mut [View], corrections: Vec<Vector6<f64>>) {
+    views.iter_mut().zip(corrections).for_each(|(view, correction)| view.correction = correction);
 }

@@ -12,7 +12,7 @@ use crate::settle::fit::Prior;
 use crate::settle::level::encoded;
 use crate::settle::view::{Seen, View};
 use geometry::TriangleMesh;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
 /// Points are this far apart, unless they would be too many.
@@ -23,15 +23,24 @@ const SEED: u64 = 1;
 /// Points that one task looks at.
 const CHUNK: usize = 4096;
 
+/// Points of the surface, in the world.
+#[derive(Debug, Clone, Default)]
+pub struct Points {
+    /// In metres.
+    pub places: Vec<Point3<f64>>,
+    /// Unit normals of the surface there.
+    pub normals: Vec<Vector3<f32>>,
+}
+
 /// A point that a picture sees: its number, its light, and how much the picture's word counts.
 type InLight = (u32, Lit, f32);
 
 impl Painter {
     /// Points spread over the surface, and for each picture those that it sees. A picture that cannot be painted sees
     /// none.
-    pub(super) fn views(&mut self, shots: &[Shot<'_>], prior: &Prior) -> (Vec<Point3<f64>>, Vec<View>) {
+    pub(super) fn views(&mut self, shots: &[Shot<'_>], prior: &Prior) -> (Points, Vec<View>) {
         let Some(mut surface) = self.surface.take() else {
-            return (Vec::new(), shots.iter().map(|(_, pose)| View::blind(pose)).collect());
+            return (Points::default(), shots.iter().map(|(_, pose)| View::blind(pose)).collect());
         };
         let texels = points_on(&TriangleMesh::from(&surface.mesh));
         let mut kept = vec![Sample::EMPTY; texels.len() * self.config.samples_per_cell];
@@ -51,7 +60,9 @@ impl Painter {
             View { seen: seen.collect(), ..View::blind(pose) }
         };
         let views = seen.into_iter().zip(shots).map(view).collect();
-        (texels.iter().map(|texel| Point3::from(texel.position_m.map(f64::from))).collect(), views)
+        let place = |texel: &Texel| (Point3::from(texel.position_m.map(f64::from)), Vector3::from(texel.normal));
+        let (places, normals) = texels.iter().map(place).unzip();
+        (Points { places, normals }, views)
     }
 
     /// The points that one picture sees, clear of edges in depth even when its pose errs as far as it may.

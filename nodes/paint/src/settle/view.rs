@@ -2,7 +2,7 @@
 
 use crate::settle::level::Level;
 use geometry::Camera;
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 
 /// A point of the surface in a view.
 #[derive(Debug, Clone, Copy)]
@@ -55,6 +55,11 @@ impl View {
         Self { camera_from_world: world_from_camera.inverse(), seen: Vec::new(), correction: Vector6::zeros() }
     }
 
+    /// Without its correction.
+    pub fn as_it_came(&self) -> Self {
+        Self { correction: Vector6::zeros(), ..self.clone() }
+    }
+
     /// What the picture says of each point that it sees, were its correction this one; not a number where it says
     /// nothing.
     pub fn says(
@@ -76,6 +81,11 @@ impl View {
     /// world_from_camera with the correction.
     pub fn world_from_camera(&self) -> Isometry3<f64> {
         (moved(&self.correction) * self.camera_from_world).inverse()
+    }
+
+    /// The rotation of camera_from_world with the correction.
+    pub fn turn(&self) -> Matrix3<f64> {
+        (moved(&self.correction) * self.camera_from_world).rotation.to_rotation_matrix().into_inner()
     }
 
     /// How far the correction shifts, in metres, and how far it turns, in radians.
