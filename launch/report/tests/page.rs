@@ -3,7 +3,7 @@
 use formats::mesh::LoadedMesh;
 use geometry::{TriangleMesh, compare};
 use nalgebra::Point3;
-use report::{Exhibits, Machine, PageError, Refused, Report, Stage, four_views, render};
+use report::{BorderError, Exhibits, Machine, PageError, Refused, Report, Stage, four_views, render};
 
 /// A tetrahedron of 40 mm, moved by `shift_m` along x.
 fn tetrahedron(shift_m: f32) -> LoadedMesh {
@@ -51,6 +51,19 @@ fn the_page_stands_alone_and_takes_no_markup_from_names() {
         page(&full(), &Exhibits { model: Some(&model), truth: Some(&truth), ..Exhibits::default() }),
         "same input, same bytes"
     );
+}
+
+#[test]
+fn borders_of_colour_are_told_on_the_page_and_in_the_json() {
+    let borders = BorderError { places: 5023, lost: 2, unseen: 999, rms_mm: 0.0504, median_mm: 0.03, p95_mm: 0.088 };
+    let report = Report { borders: Some(borders), ..full() };
+    let html = page(&report, &Exhibits::default());
+    for told in ["Borders between patches of colour", "0.050 mm", "5\u{202f}023", ">999<"] {
+        assert!(html.contains(told), "{told}");
+    }
+    let json = serde_json::to_string(&report).expect("plain numbers");
+    assert_eq!(serde_json::from_str::<Report>(&json).expect("its own words").borders, Some(borders));
+    assert!(!page(&full(), &Exhibits::default()).contains("Borders between"));
 }
 
 #[test]

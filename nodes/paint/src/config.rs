@@ -44,7 +44,8 @@ pub struct Config {
     pub white_percentile: f64,
     /// The linear value that `white_percentile` of the cells stays below: 0.8 is 231 of 255 in sRGB.
     pub white_albedo: f64,
-    /// Passes of the 1-2-1 / 2-4-2 / 1-2-1 blur. The paper: 1.
+    /// Passes of the 1-2-1 / 2-4-2 / 1-2-1 blur. The paper: 1, for cells of 1 mm. Where cells are about as fine as the
+    /// pictures' pixels it is most of what colours err, so the demo (cells of 0.25 mm) has 0.
     pub blur_passes: usize,
     /// Whether the pictures are moved a little until they agree, before they are painted. A lamp-lit picture stands
     /// between laser-lit ones, which alone tell the way, and the hand's tremor at its own moment is not known.

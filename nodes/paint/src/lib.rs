@@ -26,7 +26,9 @@
 //!
 //! Before they are painted, the pictures are moved a little until they agree on the colours ([`Painter::settle`]; Zhou &
 //! Koltun 2014): the hand trembles between the laser-lit pictures that tell its way, and several pixels' error would blur
-//! the borders of colours. A picture moves only where that makes it agree better; on a thing of one colour none does.
+//! the borders of colours. In the end all pictures are corrected at once, which their paper does not do: colours that lie
+//! elsewhere on one side of the thing are so in all pictures of it, and each alone would be held there by the others. A
+//! picture moves only where that makes it agree better; on a thing of one colour none does.
 //!
 //! Frames that come before the final mesh wait in a [`FrameStore`] of bounded memory, cropped, and are painted at the end
 //! with the final trajectory. Same input, same bytes, on any number of threads and in any order of the pictures.
