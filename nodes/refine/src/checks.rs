@@ -35,7 +35,7 @@ fn body_from_camera() -> Isometry3<f64> {
 fn the_derivative_of_a_point_by_its_correction_is_exact_far_from_zero_as_well() {
     let gathered = gathered();
     let smoothed = Smoothed::new(&gathered, &Smoothing::default()).unwrap();
-    let unknowns = Unknowns { fine: Knots::over(0.0, 4.0, 0.033), coarse: Knots::over(0.0, 4.0, 0.4) };
+    let unknowns = Unknowns { splines: [0.033, 0.1, 0.4].map(|step_s| Knots::over(0.0, 4.0, step_s)) };
     let problem = Problem {
         gathered: &gathered,
         smoothed: &smoothed,

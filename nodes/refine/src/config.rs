@@ -7,8 +7,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// Knots of the fast correction. Above 33 ms the tremor of a hand (8-12 Hz) stays in the result.
+    /// Knots of the correction by the hand's tremor. Above 33 ms a part of it (8-12 Hz) stays in the result.
     pub knot_ms: f64,
+    /// How far a hand trembles, along one axis.
+    pub tremor_mm: f64,
+    /// The same about one axis.
+    pub tremor_deg: f64,
+    /// Knots of the correction by what smoothing left of the tracker's noise.
+    pub noise_knot_ms: f64,
     /// Knots of the slow correction, for what the tracker gets wrong for longer than its noise lasts.
     pub bias_knot_ms: f64,
     /// Size of the slow correction of the position.
@@ -25,7 +31,7 @@ pub struct Config {
     pub hand_eye_deg: f64,
     /// How well the rig's pose offset is known.
     pub clock_ms: f64,
-    /// The fast correction may be this much less smooth than the smoothed tracker (a share of its penalty).
+    /// How smooth a hand's movement is, but for its tremor: a share of the penalty by which the tracker was smoothed.
     pub smoothness: f64,
     /// Frames whose residual stays above so many medians are left out.
     pub most_residual: f64,
@@ -45,15 +51,18 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             knot_ms: 33.0,
+            tremor_mm: 0.5,
+            tremor_deg: 0.4,
+            noise_knot_ms: 100.0,
             bias_knot_ms: 400.0,
-            bias_position_mm: 2.0,
-            bias_rotation_deg: 1.5,
+            bias_position_mm: 1.0,
+            bias_rotation_deg: 0.75,
             field_position_mm: 2.0,
             field_rotation_deg: 2.0,
             hand_eye_mm: 1.5,
             hand_eye_deg: 1.5,
             clock_ms: 20.0,
-            smoothness: 1e-3,
+            smoothness: 1.0,
             most_residual: 3.0,
             seed: 1,
             most_gap_ms: 100.0,
@@ -81,6 +90,9 @@ impl Config {
     pub fn check(&self) -> Result<(), ConfigError> {
         let limits = [
             ("knot_ms", self.knot_ms, 5.0..=1000.0, "5 to 1000 ms"),
+            ("tremor_mm", self.tremor_mm, 0.001..=100.0, "0.001 to 100 mm"),
+            ("tremor_deg", self.tremor_deg, 0.001..=30.0, "0.001 to 30 degrees"),
+            ("noise_knot_ms", self.noise_knot_ms, 5.0..=1000.0, "5 to 1000 ms"),
             ("bias_knot_ms", self.bias_knot_ms, 50.0..=60_000.0, "50 ms to 60 s"),
             ("bias_position_mm", self.bias_position_mm, 0.01..=100.0, "0.01 to 100 mm"),
             ("bias_rotation_deg", self.bias_rotation_deg, 0.01..=30.0, "0.01 to 30 degrees"),

@@ -14,7 +14,7 @@ use crate::solver::{self, Noise, Solution};
 use crate::step::look;
 use crate::testimony::{globals, refused, tracker};
 use crate::tracker::Smoothed;
-use crate::unknowns::Free;
+use crate::unknowns::{Free, SPLINES};
 use crate::{Config, RefineError};
 use geometry::Smoothing;
 use nalgebra::Isometry3;
@@ -39,7 +39,7 @@ pub(crate) fn finish(
     if frames.is_empty() {
         return Err(RefineError::NoFrames { frames: gathered.frames.len() });
     }
-    let noise = Noise { inflation: 1.0, bias_knot_s: config.bias_knot_ms * 1e-3 };
+    let noise = Noise::white(config);
     let still = solver::problem(config, &noise, gathered, &smoothed, &frames, body_from_camera);
     let zeros = vec![0.0; still.unknowns.len()];
     let poses = still.poses(&zeros);
@@ -47,7 +47,7 @@ pub(crate) fn finish(
     let wide_before = look(&still, &poses, &wide(config.seed));
     let strokes = strokes::look(&still, &poses, &wide_before.patches);
     let mut notices = Vec::new();
-    let free = Free { fine: true, bias: true, field: true, clock: true, hand_eye: strokes.crossing >= CROSSING };
+    let free = Free { splines: [true; SPLINES], field: true, clock: true, hand_eye: strokes.crossing >= CROSSING };
     if !free.hand_eye {
         notices.push(missing_stroke(&strokes));
     }

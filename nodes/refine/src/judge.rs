@@ -7,8 +7,9 @@ use crate::scene::{FramePose, Problem};
 use crate::schur::FrameData;
 use crate::step::{StepPlan, look};
 use crate::surfel::Member;
-use crate::unknowns::Row;
+use crate::unknowns::{Row, SPLINES};
 use nalgebra::{Matrix6, Vector6};
+use rayon::prelude::*;
 
 /// One frame, judged.
 #[derive(Debug, Clone, Copy)]
@@ -115,9 +116,10 @@ pub(crate) fn covariances(problem: &Problem, rows: &[&Row], judgement: &Judgemen
         .iter()
         .map(|frame| FrameData { hessian: frame.information, force: Vector6::zeros(), members: frame.members })
         .collect();
-    let inverse = |fine: bool| spline_block(&problem.unknowns, fine, rows, &data, prior).factor().inverse_band();
-    let (fine, bias) = rayon::join(|| inverse(true), || inverse(false));
-    rows.iter().map(|row| at_frame(&fine, row.knots(true)) + at_frame(&bias, row.knots(false))).collect()
+    let inverse = |which: usize| spline_block(&problem.unknowns, which, rows, &data, prior).factor().inverse_band();
+    let inverses: Vec<Banded> = (0..SPLINES).into_par_iter().map(inverse).collect();
+    let at = |row: &&Row| inverses.iter().zip(&row.knots).map(|(inverse, knots)| at_frame(inverse, knots)).sum();
+    rows.iter().map(at).collect()
 }
 
 /// The covariance of a spline's value, from that of its control points.

@@ -17,7 +17,7 @@ use crate::spline::Knots;
 use crate::step::step;
 use crate::testimony::{clock, hand_eye_held, refused, tracker};
 use crate::tracker::Smoothed;
-use crate::unknowns::{Free, GLOBALS, Unknowns};
+use crate::unknowns::{BIAS, Free, GLOBALS, SPLINES, Unknowns};
 use crate::{Config, random::word};
 use geometry::Smoothing;
 use nalgebra::{Isometry3, Vector3};
@@ -54,13 +54,13 @@ pub(crate) fn tick(
     if frames.last()?.t_s - frames.first()?.t_s < FIRST_S {
         return None;
     }
-    let noise = Noise { inflation: INFLATION, bias_knot_s: config.bias_knot_ms * 1e-3 };
+    let noise = Noise { inflation: INFLATION, ..Noise::white(config) };
     let mut problem = solver::problem(config, &noise, gathered, &smoothed, &frames, body_from_camera);
     problem.origin = *live.origin.get_or_insert(problem.origin);
     let mut x = live.go_on(&problem.unknowns);
     let prior = solver::prior(config, &noise, &problem);
     let late = frames.last()?.t_s > GLOBALS_S;
-    let free = Free { fine: true, bias: true, field: late, clock: late, hand_eye: false };
+    let free = Free { splines: [true; SPLINES], field: late, clock: late, hand_eye: false };
     let taken_back = live.steps(config, &problem, &prior, free, &mut x);
     let plan = judging_live(config.seed);
     let zeros = vec![0.0; x.len()];
@@ -108,21 +108,22 @@ impl Live {
         taken_back
     }
 
-    /// The unknowns of the tick before, laid out for more time. New knots of the fast correction are 0; the slow one
-    /// goes on as it was.
+    /// The unknowns of the tick before, laid out for more time. New knots of the fast corrections are 0; the slow
+    /// one goes on as it was.
     fn go_on(&self, unknowns: &Unknowns) -> Vec<f64> {
         let mut x = vec![0.0; unknowns.len()];
         let Some(before) = &self.unknowns else { return x };
         let same = |a: &Knots, b: &Knots| a.start_s == b.start_s && a.step_s == b.step_s && a.count <= b.count;
-        if !same(&before.fine, &unknowns.fine) || !same(&before.coarse, &unknowns.coarse) {
+        if !before.splines.iter().zip(&unknowns.splines).all(|(a, b)| same(a, b)) {
             return x;
         }
-        x[..before.fine().len()].copy_from_slice(&self.x[before.fine()]);
-        let bias = &self.x[before.bias()];
-        let start = unknowns.bias().start;
-        x[start..start + bias.len()].copy_from_slice(bias);
-        let last = &bias[bias.len() - 6..];
-        x[start + bias.len()..unknowns.bias().end].chunks_exact_mut(6).for_each(|knot| knot.copy_from_slice(last));
+        for which in 0..SPLINES {
+            let (known, start) = (before.spline(which), unknowns.spline(which).start);
+            x[start..start + known.len()].copy_from_slice(&self.x[known]);
+        }
+        let (bias, known) = (unknowns.spline(BIAS), before.spline(BIAS));
+        let last = &self.x[known.end - 6..known.end];
+        x[bias.start + known.len()..bias.end].chunks_exact_mut(6).for_each(|knot| knot.copy_from_slice(last));
         let globals = unknowns.globals();
         x[globals.clone()].copy_from_slice(&self.x[before.globals()]);
         debug_assert_eq!(globals.len(), GLOBALS);

@@ -3,14 +3,13 @@
 use crate::banded::{Banded, Factor};
 use crate::prior::{Prior, is_free};
 use crate::schur::FrameData;
-use crate::unknowns::{Free, GLOBALS, Row, Unknowns};
+use crate::unknowns::{Free, GLOBALS, Row, SPLINES, Unknowns};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
-/// The three factored blocks; those that are not free are `None`.
+/// The factored blocks; those that are not free are `None`.
 pub(crate) struct Preconditioner {
-    fine: Option<Factor>,
-    bias: Option<Factor>,
+    splines: Vec<Option<Factor>>,
     globals: Option<Cholesky<f64, Dyn>>,
 }
 
@@ -21,30 +20,28 @@ const HALF_BANDWIDTH: usize = 23;
 
 impl Preconditioner {
     pub fn new(unknowns: &Unknowns, free: &Free, rows: &[&Row], data: &[FrameData], prior: &Prior) -> Self {
-        let spline = |fine: bool| {
-            let mut band = spline_block(unknowns, fine, rows, data, prior);
+        let spline = |which: usize| {
+            let mut band = spline_block(unknowns, which, rows, data, prior);
             band.damp(DAMPING);
             band.factor()
         };
-        let (fine, (bias, globals)) = rayon::join(
-            || free.fine.then(|| spline(true)),
-            || (free.bias.then(|| spline(false)), globals(unknowns, free, rows, data, prior)),
+        let (splines, globals) = rayon::join(
+            || (0..SPLINES).into_par_iter().map(|which| free.splines[which].then(|| spline(which))).collect(),
+            || globals(unknowns, free, rows, data, prior),
         );
-        Self { fine, bias, globals }
+        Self { splines, globals }
     }
 
     /// The residual, made into a step.
     pub fn apply(&self, unknowns: &Unknowns, residual: &[f64]) -> Vec<f64> {
         let mut out = residual.to_vec();
-        let (splines, globals) = out.split_at_mut(unknowns.globals().start);
-        let (fine, bias) = splines.split_at_mut(unknowns.bias().start);
-        if let Some(factor) = &self.fine {
-            factor.solve(fine);
-        }
-        if let Some(factor) = &self.bias {
-            factor.solve(bias);
+        for (which, factor) in self.splines.iter().enumerate() {
+            if let Some(factor) = factor {
+                factor.solve(&mut out[unknowns.spline(which)]);
+            }
         }
         if let Some(cholesky) = &self.globals {
+            let globals = &mut out[unknowns.globals()];
             let mut right = DVector::from_column_slice(globals);
             cholesky.solve_mut(&mut right);
             globals.copy_from_slice(right.as_slice());
@@ -56,16 +53,15 @@ impl Preconditioner {
 /// Data and prior of one spline, all else held fast.
 pub(crate) fn spline_block(
     unknowns: &Unknowns,
-    fine: bool,
+    which: usize,
     rows: &[&Row],
     data: &[FrameData],
     prior: &Prior,
 ) -> Banded {
-    let count = if fine { unknowns.fine.count } else { unknowns.coarse.count };
-    let mut band = Banded::zeros(6 * count, HALF_BANDWIDTH);
-    prior.add_to_band(fine, &mut band);
+    let mut band = Banded::zeros(6 * unknowns.splines[which].count, HALF_BANDWIDTH);
+    prior.add_to_band(which, &mut band);
     for (row, data) in rows.iter().zip(data).filter(|(_, data)| data.members > 0) {
-        let (first, weights) = row.knots(fine);
+        let (first, weights) = &row.knots[which];
         for a in 0..4 {
             for b in 0..=a {
                 let weight = weights[a] * weights[b];

@@ -1,11 +1,13 @@
 //! What is believed before the surface is looked at: quadratic, all of mean zero.
 //!
-//! The smoothed tracker minimises (readings + smoothness), so it stands for all readings: the correction's own penalty is
-//! the same quadratic form around it, with a weaker smoothness because the hand's tremor must come back.
+//! A hand moves smoothly, and trembles. The smoothed tracker minimises (readings + smoothness), so it stands for all
+//! readings: what it left of their noise has the same quadratic form around it for its prior. The tremor, which is no
+//! smoother than the knots allow but small, has a spline of its own; to make up for it by less smoothness lets the whole band
+//! between the hand's movement and its tremor (2 to 8 Hz) go free, and where few strokes cross the surface does not hold it.
 
 use crate::banded::Banded;
 use crate::spline::Knots;
-use crate::unknowns::{Free, GLOBALS, Unknowns};
+use crate::unknowns::{BIAS, Free, GLOBALS, NOISE, SPLINES, TREMOR, Unknowns};
 
 /// Standard deviations of the unknowns, in metres, radians and seconds; pairs are (position, rotation).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,15 +16,16 @@ pub(crate) struct Beliefs {
     pub white: [f64; 2],
     /// How many times its variance the readings have where it counts.
     pub inflation: [f64; 2],
-    /// Weight of the squared third differences of the fine knots.
+    /// Weight of the squared third differences of the noise's knots.
     pub smoothness: [f64; 2],
+    pub tremor: [f64; 2],
     pub bias: [f64; 2],
     pub field: [f64; 2],
     pub hand_eye: [f64; 2],
     pub clock_s: f64,
 }
 
-/// Where no reading holds the fast correction, it is still no larger than this.
+/// Where no reading holds what is left of the noise, it is still no larger than this.
 const FAR: [f64; 2] = [0.03, 0.3];
 /// Second differences of the slow correction count so much more than its size.
 const BIAS_BEND: f64 = 4.0;
@@ -30,29 +33,33 @@ const BIAS_BEND: f64 = 4.0;
 /// The precision matrix P of the prior.
 #[derive(Debug, Clone)]
 pub(crate) struct Prior {
-    /// One axis of position, one of rotation.
-    fine: [Banded; 2],
-    /// The readings' part of it, at the variance that the smoother found.
+    /// Of each spline one axis of position, one of rotation.
+    splines: [[Banded; 2]; SPLINES],
+    /// The readings' part of that of the noise, at the variance that the smoother found.
     readings: [Banded; 2],
-    bias: [Banded; 2],
     globals: [f64; GLOBALS],
 }
 
 impl Prior {
     /// `reading_times_s` are on the splines' time.
     pub fn new(unknowns: &Unknowns, reading_times_s: &[f64], beliefs: &Beliefs) -> Self {
-        let gram = gram(&unknowns.fine, reading_times_s);
-        let readings = [0, 1].map(|kind| gram.clone().scaled(beliefs.white[kind].powi(-2)));
-        let fine = [0, 1].map(|kind| {
-            let mut band = readings[kind].clone().scaled(1.0 / beliefs.inflation[kind]);
-            (0..unknowns.fine.count).for_each(|row| band.add(row, row, FAR[kind].powi(-2)));
-            add_differences(&mut band, &[-1.0, 3.0, -3.0, 1.0], beliefs.smoothness[kind]);
-            band
-        });
+        let gram = [TREMOR, NOISE].map(|which| gram(&unknowns.splines[which], reading_times_s));
+        let readings = |which: usize| [0, 1].map(|kind| gram[which].clone().scaled(beliefs.white[kind].powi(-2)));
+        let held = |which: usize, most: [f64; 2]| {
+            let bands = readings(which);
+            [0, 1].map(|kind| {
+                let mut band = bands[kind].clone().scaled(1.0 / beliefs.inflation[kind]);
+                (0..band.size).for_each(|row| band.add(row, row, most[kind].powi(-2)));
+                band
+            })
+        };
+        let mut noise = held(NOISE, FAR);
+        let third = [-1.0, 3.0, -3.0, 1.0];
+        noise.iter_mut().zip(beliefs.smoothness).for_each(|(band, weight)| add_differences(band, &third, weight));
         let bias = [0, 1].map(|kind| {
-            let mut band = Banded::zeros(unknowns.coarse.count, 2);
+            let mut band = Banded::zeros(unknowns.splines[BIAS].count, 2);
             let weight = beliefs.bias[kind].powi(-2);
-            (0..unknowns.coarse.count).for_each(|row| band.add(row, row, weight));
+            (0..band.size).for_each(|row| band.add(row, row, weight));
             add_differences(&mut band, &[1.0, -2.0, 1.0], BIAS_BEND * weight);
             band
         });
@@ -61,13 +68,13 @@ impl Prior {
             let sigmas = if i < GLOBALS - 7 { beliefs.field } else { beliefs.hand_eye };
             *precision = sigmas[usize::from(i % 6 >= 3)].powi(-2);
         }
-        Self { fine, readings, bias, globals }
+        Self { splines: [held(TREMOR, beliefs.tremor), noise, bias], readings: readings(NOISE), globals }
     }
 
     /// Adds P v to `out`, for the blocks that are free.
     pub fn add_product(&self, unknowns: &Unknowns, free: &Free, v: &[f64], out: &mut [f64]) {
-        let blocks = [(free.fine, &self.fine, unknowns.fine()), (free.bias, &self.bias, unknowns.bias())];
-        for (_, bands, range) in blocks.into_iter().filter(|(is_free, ..)| *is_free) {
+        for (which, bands) in self.splines.iter().enumerate().filter(|(which, _)| free.splines[*which]) {
+            let range = unknowns.spline(which);
             for axis in 0..6 {
                 multiply(&bands[axis / 3], &v[range.clone()], &mut out[range.clone()], axis);
             }
@@ -79,10 +86,10 @@ impl Prior {
     }
 
     /// Adds P to the block of a spline, as the preconditioner holds it.
-    pub fn add_to_band(&self, fine: bool, band: &mut Banded) {
-        let (bands, reach) = if fine { (&self.fine, 3) } else { (&self.bias, 2) };
+    pub fn add_to_band(&self, which: usize, band: &mut Banded) {
+        let bands = &self.splines[which];
         for row in 0..bands[0].size {
-            for column in row.saturating_sub(reach)..=row {
+            for column in row.saturating_sub(bands[0].half_bandwidth())..=row {
                 for axis in 0..6 {
                     band.add(6 * row + axis, 6 * column + axis, bands[axis / 3].at(row, column));
                 }
@@ -90,9 +97,9 @@ impl Prior {
         }
     }
 
-    /// One axis of the fast correction: 0 position, 1 rotation.
-    pub fn fine(&self, kind: usize) -> &Banded {
-        &self.fine[kind]
+    /// One axis of what is left of the noise: 0 position, 1 rotation.
+    pub fn noise(&self, kind: usize) -> &Banded {
+        &self.splines[NOISE][kind]
     }
 
     /// The readings' part of it, not inflated.

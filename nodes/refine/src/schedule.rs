@@ -2,7 +2,7 @@
 
 use crate::step::StepPlan;
 use crate::surfel::SurfelPlan;
-use crate::unknowns::Free;
+use crate::unknowns::{Free, SPLINES, TREMOR};
 
 /// One stage of the final refinement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,12 +38,14 @@ pub(crate) const LIVE: [Stage; 3] = [
 /// Seeds of the stages are so far apart.
 pub(crate) const STAGE_SEEDS: u64 = 64;
 pub(crate) const MOST_MEMBERS: usize = 20;
-const CG_STEPS: usize = 30;
+/// Enough for a scan of a minute.
+pub(crate) const CG_STEPS: usize = 30;
 
 impl Stage {
     /// The plan of a step; `scale_m` is the robust scale now, `seed` differs from step to step.
     pub fn plan(&self, free: Free, scale_m: f64, seed: u64) -> StepPlan {
-        let free = if self.slow_only { Free { fine: false, ..free } } else { free };
+        let mut free = free;
+        free.splines[TREMOR] &= !self.slow_only;
         let bounds = self.bounds_m();
         StepPlan {
             surfels: SurfelPlan {
@@ -82,6 +84,6 @@ pub(crate) fn judging_live(seed: u64) -> StepPlan {
 }
 
 fn looking(stage: &Stage, seed: u64) -> StepPlan {
-    let none = Free { fine: false, bias: false, field: false, hand_eye: false, clock: false };
+    let none = Free { splines: [false; SPLINES], field: false, hand_eye: false, clock: false };
     stage.plan(none, f64::INFINITY, seed)
 }

@@ -8,11 +8,11 @@ use crate::precondition::spline_block;
 use crate::prior::{Beliefs, Prior};
 use crate::random::word;
 use crate::scene::{Placed, Problem};
-use crate::schedule::{SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage, wide};
+use crate::schedule::{CG_STEPS, SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage, wide};
 use crate::spline::Knots;
-use crate::step::{Seen, look, step};
+use crate::step::{Seen, StepPlan, look, step};
 use crate::tracker::Smoothed;
-use crate::unknowns::{Free, Row, Unknowns};
+use crate::unknowns::{Free, NOISE, Row, Unknowns};
 use nalgebra::{Isometry3, Vector3};
 
 /// How the tracker's noise is taken.
@@ -21,6 +21,21 @@ pub(crate) struct Noise {
     /// The readings' variance where it counts, in units of what the smoother found.
     pub inflation: f64,
     pub bias_knot_s: f64,
+    /// Size of the slow correction, in units of what the configuration says.
+    pub bias_size: f64,
+}
+
+impl Noise {
+    /// As it is taken before anything is known of it.
+    pub fn white(config: &Config) -> Self {
+        Self { inflation: 1.0, bias_knot_s: config.bias_knot_ms * 1e-3, bias_size: 1.0 }
+    }
+
+    /// A third of a second: believed so much less, and brought back by slow corrections that are quicker and larger.
+    fn coloured(config: &Config) -> Self {
+        let bias_knot_s = (config.bias_knot_ms * 1e-3).min(COLOURED_KNOT_S);
+        Self { inflation: COLOURED_INFLATION, bias_knot_s, bias_size: COLOURED_SIZE }
+    }
 }
 
 /// The frames that have a pose, and the splines over them.
@@ -45,8 +60,8 @@ pub(crate) fn problem<'a>(
 ) -> Problem<'a> {
     let end_s = frames.last().map_or(0.0, |frame| frame.t_s);
     let unknowns = Unknowns {
-        fine: Knots::over(0.0, end_s, config.knot_ms * 1e-3),
-        coarse: Knots::over(0.0, end_s, noise.bias_knot_s),
+        splines: [config.knot_ms * 1e-3, config.noise_knot_ms * 1e-3, noise.bias_knot_s]
+            .map(|step_s| Knots::over(0.0, end_s, step_s)),
     };
     let places = frames.iter().filter_map(|frame| smoothed.at(frame.stamp_nanos));
     let sum: Vector3<f64> = places.map(|pose| pose.translation.vector).sum();
@@ -60,14 +75,15 @@ pub(crate) fn prior(config: &Config, noise: &Noise, problem: &Problem) -> Prior 
     let times = problem.gathered.readings.iter().map(|r| (r.stamp_nanos - problem.start_nanos()) as f64 * 1e-9);
     let times: Vec<f64> = times.filter(|t| span.contains(t)).collect();
     let white = problem.smoothed.white().map(|sigma| sigma.max(LEAST_WHITE));
-    let stiffness = problem.smoothed.stiffness(config.knot_ms * 1e-3);
+    let stiffness = problem.smoothed.stiffness(config.noise_knot_ms * 1e-3);
     let deg = f64::to_radians;
     let slow = |most: [f64; 2]| [0, 1].map(|k| most[k].min(SLOW_PER_WHITE * white[k]));
     let beliefs = Beliefs {
         white,
         inflation: [noise.inflation; 2],
         smoothness: [0, 1].map(|k| config.smoothness * stiffness[k].max(LEAST_STIFFNESS) / white[k].powi(2)),
-        bias: slow([config.bias_position_mm * 1e-3, deg(config.bias_rotation_deg)]),
+        tremor: [config.tremor_mm * 1e-3, deg(config.tremor_deg)],
+        bias: slow([config.bias_position_mm * 1e-3, deg(config.bias_rotation_deg)].map(|most| most * noise.bias_size)),
         field: slow([config.field_position_mm * 1e-3, deg(config.field_rotation_deg)]),
         hand_eye: [config.hand_eye_mm * 1e-3, deg(config.hand_eye_deg)],
         clock_s: config.clock_ms * 1e-3,
@@ -97,6 +113,15 @@ const GAIN: f64 = 0.93;
 const FEWEST_STEPS: usize = 2;
 const MOST_STEPS: usize = 8;
 
+/// Short scans are held by few crossings, and what warps them as a whole comes late in conjugate gradients; and they can pay
+/// for more of them: so many products with one point.
+const CG_POINTS: usize = 4_000_000;
+const MOST_CG_STEPS: usize = 90;
+
+fn cg_steps(problem: &Problem) -> usize {
+    (CG_POINTS / problem.gathered.points.max(1)).clamp(CG_STEPS, MOST_CG_STEPS)
+}
+
 /// The steps of one stage, from `x`. `scale_m` is the robust scale and goes on from stage to stage.
 pub(crate) fn run_stage(
     config: &Config,
@@ -112,7 +137,8 @@ pub(crate) fn run_stage(
     for i in 0..MOST_STEPS {
         let seed = word(config.seed, STAGE_SEEDS * number as u64 + i as u64);
         let now = x.clone();
-        let Some(seen) = step(problem, prior, &stage.plan(free, *scale_m, seed), x) else {
+        let plan = StepPlan { cg_steps: cg_steps(problem), ..stage.plan(free, *scale_m, seed) };
+        let Some(seen) = step(problem, prior, &plan, x) else {
             *x = now;
             return progress.map(|progress| Progress { taken_back: true, ..progress });
         };
@@ -136,7 +162,7 @@ pub(crate) fn run_stage(
 pub(crate) fn excess(problem: &Problem, prior: &Prior, seen: &Seen, x: &[f64]) -> Option<f64> {
     let rows = problem.rows(x[problem.unknowns.clock()]);
     let rows: Vec<&Row> = rows.iter().collect();
-    let posterior = spline_block(&problem.unknowns, true, &rows, &seen.frames, prior);
+    let posterior = spline_block(&problem.unknowns, NOISE, &rows, &seen.frames, prior);
     let found = coloured::inflation(&problem.unknowns, prior, posterior, x);
     found.into_iter().flatten().reduce(f64::max)
 }
@@ -153,11 +179,11 @@ pub(crate) struct Solution {
     pub taken_back: bool,
 }
 
-/// Above this the noise is not white: 0.2 to 0.4 is what white noise and fields give, 0.9 and more what noise of 0.3 s
-/// gives (the data are counted several times, so it is not 1).
-const COLOURED: f64 = 0.6;
-/// What is believed then: variance and knots that bring back noise of a third of a second.
+/// Above this the noise is not white: 0.2 to 0.6 is what white noise and fields give, 1.0 what noise of 0.3 s gives (the
+/// data are counted several times, so it is not 1).
+const COLOURED: f64 = 0.8;
 const COLOURED_INFLATION: f64 = 30.0;
+const COLOURED_SIZE: f64 = 2.0;
 const COLOURED_KNOT_S: f64 = 0.2;
 
 /// All stages from nothing. The tracker's noise is judged after the second; when it is coloured all begins again, and
@@ -170,8 +196,7 @@ pub(crate) fn run<'a>(
     frames: &'a [Placed],
     body_from_camera: Isometry3<f64>,
 ) -> (Problem<'a>, Solution) {
-    let white = Noise { inflation: 1.0, bias_knot_s: config.bias_knot_ms * 1e-3 };
-    let coloured = Noise { inflation: COLOURED_INFLATION, bias_knot_s: white.bias_knot_s.min(COLOURED_KNOT_S) };
+    let white = Noise::white(config);
     let mut noise = white;
     let mut excess_found = None;
     loop {
@@ -203,6 +228,6 @@ pub(crate) fn run<'a>(
         if !again {
             return (problem, Solution { x, free, moved, noise, excess: excess_found, taken_back });
         }
-        noise = coloured;
+        noise = Noise::coloured(config);
     }
 }

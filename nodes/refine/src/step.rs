@@ -39,7 +39,7 @@ pub(crate) struct Seen {
 }
 
 /// Each point is a member of several surfels, and surfels are not the surface: their word counts this much.
-const DATA_SHARE: f64 = 0.3;
+const DATA_SHARE: f64 = 0.2;
 /// Residuals are never believed to be better than this.
 const LEAST_SIGMA_M: f64 = 1e-4;
 

@@ -3,10 +3,11 @@
 //! A correction of frame k is a twist (dt, dr)_k: position in metres along, rotation in radians about the axes of the
 //! smoothed body. It is a linear function of the unknowns,
 //!
-//!   (dt, dr)_k = sum B_a(t_k) xi_a + sum B'_a(t_k) b_a + diag(R^T, R^T) sum phi_m(p_k) a_m + eta
+//!   (dt, dr)_k = sum of three splines at t_k + diag(R^T, R^T) sum phi_m(p_k) a_m + eta
 //!
-//! with xi on fine knots (what the white noise left), b on coarse knots (slow errors), a the coefficients of a field of
-//! degree 2 in space, and eta the hand-eye correction; the clock offset tau moves the base pose itself.
+//! with splines for the hand's tremor that smoothing took off the way, for what smoothing left of the white noise, and for slow
+//! errors; a the coefficients of a field of degree 2 in space, and eta the hand-eye correction; the clock offset tau moves
+//! the base pose itself.
 
 use crate::spline::Knots;
 use nalgebra::{Isometry3, Matrix3, Vector3, Vector6};
@@ -20,18 +21,22 @@ pub(crate) const GLOBALS: usize = FIELD + 6 + 1;
 /// The field's coordinates are in units of this.
 const FIELD_LENGTH_M: f64 = 0.3;
 
-/// Where each block of unknowns begins.
+/// The splines, by their places in [`Unknowns::splines`].
+pub(crate) const SPLINES: usize = 3;
+pub(crate) const TREMOR: usize = 0;
+pub(crate) const NOISE: usize = 1;
+pub(crate) const BIAS: usize = 2;
+
+/// The unknowns stand in the order of the splines; the globals are behind them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknowns {
-    pub fine: Knots,
-    pub coarse: Knots,
+    pub splines: [Knots; SPLINES],
 }
 
 /// Which blocks are free to move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Free {
-    pub fine: bool,
-    pub bias: bool,
+    pub splines: [bool; SPLINES],
     pub field: bool,
     pub hand_eye: bool,
     pub clock: bool,
@@ -40,8 +45,8 @@ pub(crate) struct Free {
 /// One frame's row of the linear map from the unknowns to its correction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Row {
-    fine: (usize, [f64; 4]),
-    coarse: (usize, [f64; 4]),
+    /// First knot and weights of each spline.
+    pub knots: [(usize, [f64; 4]); SPLINES],
     monomials: [f64; MONOMIALS],
     /// world_from_body of the smoothed tracker at t_k + tau.
     pub base: Isometry3<f64>,
@@ -55,17 +60,14 @@ impl Unknowns {
         self.globals().end
     }
 
-    pub fn fine(&self) -> Range<usize> {
-        0..6 * self.fine.count
-    }
-
-    pub fn bias(&self) -> Range<usize> {
-        let start = self.fine().end;
-        start..start + 6 * self.coarse.count
+    /// Where a spline's control points are.
+    pub fn spline(&self, which: usize) -> Range<usize> {
+        let start = 6 * self.splines[..which].iter().map(|knots| knots.count).sum::<usize>();
+        start..start + 6 * self.splines[which].count
     }
 
     pub fn globals(&self) -> Range<usize> {
-        let start = self.bias().end;
+        let start = self.spline(SPLINES - 1).end;
         start..start + GLOBALS
     }
 
@@ -88,15 +90,16 @@ impl Unknowns {
         let p = (base.translation.vector - middle) / FIELD_LENGTH_M;
         let monomials = [1.0, p.x, p.y, p.z, p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x];
         let world_from_base = base.rotation.to_rotation_matrix().into_inner();
-        let (fine, coarse) = (self.fine.weights(t_s), self.coarse.weights(t_s));
-        Row { fine, coarse, monomials, base, world_from_base, twist }
+        let knots = self.splines.map(|knots| knots.weights(t_s));
+        Row { knots, monomials, base, world_from_base, twist }
     }
 
     /// The correction of one frame; `with_clock` adds what a change of tau does to it (for steps, not for poses: there
     /// the base was read at t + tau already).
     pub fn correction(&self, row: &Row, x: &[f64], with_clock: bool) -> Vector6<f64> {
         let mut sum = Vector6::zeros();
-        for (first, (knot, weights)) in [(self.fine().start, &row.fine), (self.bias().start, &row.coarse)] {
+        for (which, (knot, weights)) in row.knots.iter().enumerate() {
+            let first = self.spline(which).start;
             for (a, weight) in weights.iter().enumerate() {
                 let at = first + 6 * (knot + a);
                 (0..6).for_each(|i| sum[i] += weight * x[at + i]);
@@ -124,8 +127,8 @@ impl Unknowns {
 
     /// The transpose: adds one frame's force on its correction to the forces on the unknowns that are free.
     pub fn spread(&self, row: &Row, force: &Vector6<f64>, free: &Free, out: &mut [f64]) {
-        let knots = [(free.fine, self.fine().start, &row.fine), (free.bias, self.bias().start, &row.coarse)];
-        for (_, first, (knot, weights)) in knots.into_iter().filter(|(is_free, ..)| *is_free) {
+        for (which, (knot, weights)) in row.knots.iter().enumerate().filter(|(which, _)| free.splines[*which]) {
+            let first = self.spline(which).start;
             for (a, weight) in weights.iter().enumerate() {
                 let at = first + 6 * (knot + a);
                 (0..6).for_each(|i| out[at + i] += weight * force[i]);
@@ -167,11 +170,6 @@ impl Unknowns {
 }
 
 impl Row {
-    /// Knots and weights of the fine (`true`) or coarse spline.
-    pub fn knots(&self, fine: bool) -> &(usize, [f64; 4]) {
-        if fine { &self.fine } else { &self.coarse }
-    }
-
     /// world_from_body after a correction: R = R_base exp(dr), p = p_base + R_base dt.
     pub fn corrected(&self, correction: &Vector6<f64>) -> Isometry3<f64> {
         let shift: Vector3<f64> = correction.fixed_rows::<3>(0).into();

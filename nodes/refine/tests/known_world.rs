@@ -53,6 +53,15 @@ fn white_noise_of_three_degrees_leaves_a_tenth_of_a_millimetre() {
 }
 
 #[test]
+fn a_scan_of_twenty_seconds_is_held_by_what_is_known_of_hands() {
+    for seed in [1, 2] {
+        let sweep = Sweep::new(&Spec { seconds: 20.0, ..Spec::named("P", seed) });
+        let result = refined(&sweep);
+        assert!(result.fit.thing_rms < 0.5, "{}", result.fit);
+    }
+}
+
+#[test]
 fn a_bent_field_with_a_wrong_clock_and_a_wrong_hand_eye_is_undone_and_the_clock_found() {
     let result = refined(&Sweep::new(&named("M")));
     assert!(result.smoothed.rms > 2.0);

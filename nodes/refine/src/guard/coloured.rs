@@ -2,13 +2,13 @@
 //!
 //! Cross-validation sees only how readings differ from their neighbours. Noise that lasts for some tenths of a second
 //! goes into the smoothed way unseen, and a prior that counts every reading as a new one is too stiff for it. Where the
-//! surface holds the way, the fast correction shows it: it is larger than the prior allows.
+//! surface holds the way, the correction shows it: it is larger than the prior allows.
 
 use crate::banded::Banded;
 use crate::prior::Prior;
-use crate::unknowns::Unknowns;
+use crate::unknowns::{NOISE, Unknowns};
 
-/// How many times the stated variance the readings have, position and rotation, as the fast correction `xi` shows it:
+/// How many times the stated variance the readings have, position and rotation, as the correction `xi` of the noise shows it:
 /// the evidence's fixed point xi' G xi / (tr G P^-1 - tr G H^-1) (MacKay 1992, "Bayesian interpolation", equation 4.10),
 /// G being the readings' part of the prior at the stated variance, P the prior and H prior and data together. `None`
 /// when the data hold too little to tell.
@@ -16,17 +16,17 @@ pub(crate) fn inflation(unknowns: &Unknowns, prior: &Prior, posterior: Banded, x
     let inverse = posterior.factor().inverse_band();
     [0, 1].map(|kind| {
         let readings = prior.readings(kind);
-        let before = trace_of_product(readings, &prior.fine(kind).clone().factor().inverse_band(), |i| i);
+        let before = trace_of_product(readings, &prior.noise(kind).clone().factor().inverse_band(), |i| i);
         let (mut energy, mut held) = (0.0, 0.0);
         for axis in 3 * kind..3 * kind + 3 {
-            energy += quadratic(readings, &x[unknowns.fine()], axis);
+            energy += quadratic(readings, &x[unknowns.spline(NOISE)], axis);
             held += before - trace_of_product(readings, &inverse, |i| 6 * i + axis);
         }
         (held > FEWEST_HELD).then(|| energy / held)
     })
 }
 
-/// Of the fast correction's unknowns, so many must be held by data.
+/// Of that correction's unknowns, so many must be held by data.
 const FEWEST_HELD: f64 = 30.0;
 
 /// tr(A B), rows of A standing at `place` in B; bands as wide as A's.
