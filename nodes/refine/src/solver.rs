@@ -179,9 +179,9 @@ pub(crate) struct Solution {
     pub taken_back: bool,
 }
 
-/// Above this the noise is not white: 0.2 to 0.6 is what white noise and fields give, 1.0 what noise of 0.3 s gives (the
-/// data are counted several times, so it is not 1).
-const COLOURED: f64 = 0.8;
+/// Above this the noise is not white: 0.14 to 0.43 is what white noise and fields give, 0.66 and more what noise of 0.3 s
+/// gives (the data are counted several times, so it is not 1).
+const COLOURED: f64 = 0.55;
 const COLOURED_INFLATION: f64 = 30.0;
 const COLOURED_SIZE: f64 = 2.0;
 const COLOURED_KNOT_S: f64 = 0.2;
