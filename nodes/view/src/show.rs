@@ -17,7 +17,8 @@ const TRAIL: [u8; 3] = [90, 150, 220];
 
 /// All that follows was measured at this stamp.
 pub(crate) fn at(rec: &RecordingStream, header: &Header) {
-    rec.set_duration_secs("scan", header.stamp_nanos as f64 * 1e-9);
+    // A tracker speaks before the scan begins, too: the stamp may be below 0.
+    rec.set_time("scan", rerun::TimeCell::from_duration_nanos(header.stamp_nanos));
 }
 
 pub(crate) fn world(rec: &RecordingStream) -> Result {
