@@ -7,15 +7,17 @@
 //!
 //! # Method
 //!
-//! The tracker is smoothed (`geometry::SmoothTrajectory`), and a correction is added: a spline with knots of 33 ms for the
-//! hand's tremor that was smoothed away, one of 100 ms for what is left of the tracker's white noise, one with slow knots for errors
-//! that last, a polynomial in space for the field of the room, the hand-eye transform and the clock offset (`unknowns`). All of them are found at once by Gauss-Newton steps. A point's residual is its
-//! distance from the quadric through its neighbours of all times, seen from the same side (`surfel`, `quadric`;
-//! Geman-McClure weights). The quadrics' own parameters are eliminated exactly (`schur`), or what was scanned first would hold
-//! its errors fast; this is bundle adjustment with surface patches for landmarks (Triggs et al. 2000; for planes Liu and
+//! The tracker is smoothed (`geometry::SmoothTrajectory`), and a correction is added: a spline with knots of 33 ms for
+//! the hand's tremor that was smoothed away, one of 100 ms for what is left of the tracker's white noise, one with slow
+//! knots for errors that last, a polynomial in space for the field of the room, the hand-eye transform and the clock
+//! offset (`unknowns`). All of them are found at once by Gauss-Newton steps. A point's residual is its distance from
+//! the quadric through its neighbours of all times, seen from the same side (`surfel`, `quadric`; Geman-McClure
+//! weights). The quadrics' own parameters are eliminated exactly (`schur`), or what was scanned first would hold its
+//! errors fast; this is bundle adjustment with surface patches for landmarks (Triggs et al. 2000; for planes Liu and
 //! Zhang 2021, "BALM"). The system is never formed: conjugate gradients multiply by it surfel by surfel (`pcg`,
-//! `precondition`). The schedule goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all readings in
-//! the prior (`prior`). In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`): where the scan lies in the world no surface tells.
+//! `precondition`). The schedule goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all
+//! readings in the prior (`prior`). In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`):
+//! where the scan lies in the world no surface tells.
 //!
 //! # Guards
 //!
