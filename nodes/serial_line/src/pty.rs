@@ -45,7 +45,6 @@ impl<E: Emulated> Pty<E> {
         let path = PathBuf::from(terminal.name().unwrap_or_default());
         // Held open it would stay locked to whoever opened it last.
         drop(terminal);
-        host_end.set_timeout(TICK)?;
         if let Some(link) = link {
             relink(&path, link)?;
         }
@@ -100,6 +99,11 @@ fn play<E: Emulated>(
     due: &mut VecDeque<Delivery>,
     clock: HostClock,
 ) {
+    // What waits for its moment leaves at it, not at the next tick.
+    let next = due.front().map_or(TICK, |delivery| {
+        Duration::from_nanos(delivery.due_nanos.saturating_sub(clock.now_nanos()).max(1) as u64).min(TICK)
+    });
+    let _ = port.set_timeout(next);
     let mut heard = [0u8; 256];
     match port.read(&mut heard) {
         // A cut line does not carry the host's words either.
