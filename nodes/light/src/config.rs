@@ -42,16 +42,14 @@ impl Default for Config {
     }
 }
 
+const NODE: &str = "light";
+
 impl Config {
     /// Refuses what no lights can do.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let refuse = |key, value: String, wanted| Err(ConfigError { node: "light", key, value, wanted });
-        if self.port.as_os_str().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
-        }
-        if !(1200..=4_000_000).contains(&self.baud) {
-            return refuse("baud", self.baud.to_string(), "1200 to 4000000");
-        }
+        let refuse = |key, value: String, wanted| Err(ConfigError { node: NODE, key, value, wanted });
+        let bauds = 1200..=4_000_000;
+        ConfigError::unless_line(NODE, &self.port, (self.baud, |baud| bauds.contains(&baud), "1200 to 4000000"))?;
         for (key, millis) in [("laser_ms", self.laser_ms), ("lamp_ms", self.lamp_ms)] {
             if !(10..=60_000).contains(&millis) {
                 return refuse(key, millis.to_string(), "10 to 60000");

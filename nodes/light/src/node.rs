@@ -2,7 +2,7 @@
 
 use crate::{Config, Lights};
 use kit::Node;
-use serial_line::News;
+use serial_line::node::tell;
 use wire::Phase;
 
 /// Keeps the lights as the phase wants them until it is told to stop.
@@ -22,12 +22,4 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     // They go out before the node leaves.
     drop(lights);
     node.close()
-}
-
-fn tell(news: News) {
-    match news {
-        News::Streaming(found) => tracing::info!("{found}"),
-        News::Trouble(trouble) => tracing::error!("{trouble}"),
-        News::Noisy(sentence) => tracing::warn!("{sentence}"),
-    }
 }

@@ -1,5 +1,7 @@
 //! A setting that cannot be, of any node on a serial line.
 
+use std::path::Path;
+
 /// A setting that cannot be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{node}: {key} = {value}: {wanted}")]
@@ -27,5 +29,23 @@ impl ConfigError {
             return Ok(());
         }
         Err(Self { node, key, value: value.to_string(), wanted })
+    }
+    /// Refuses a line that cannot be opened: a port without a name, or a rate that the device does not have.
+    ///
+    /// # Errors
+    /// Such a line.
+    pub fn unless_line(
+        node: &'static str,
+        port: &Path,
+        (baud, has, wanted): (u32, impl Fn(u32) -> bool, &'static str),
+    ) -> Result<(), Self> {
+        if port.as_os_str().is_empty() {
+            let wanted = "name the serial port; `limn devices` lists them";
+            return Err(Self { node, key: "port", value: "\"\"".to_owned(), wanted });
+        }
+        if has(baud) {
+            return Ok(());
+        }
+        Err(Self { node, key: "baud", value: baud.to_string(), wanted })
     }
 }

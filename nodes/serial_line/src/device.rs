@@ -22,6 +22,13 @@ pub trait Device: Send + 'static {
     fn set_up(&mut self, line: &mut Line) -> Result<String, Trouble>;
     /// Takes bytes; calls back for each whole record.
     fn take(&mut self, bytes: &[u8], each: &mut dyn FnMut(Heard<Self::Record>));
+    /// Looks whether it should be asked something while it streams, and asks: what is wrong, in a sentence.
+    ///
+    /// # Errors
+    /// Nothing is measured any more.
+    fn ask_why(&mut self, _: &mut Line) -> Result<Option<String>, Trouble> {
+        Ok(None)
+    }
     /// What it has seen so far.
     fn tally(&self) -> Tally;
     /// How long it may be quiet.
@@ -61,7 +68,7 @@ pub enum News {
     Streaming(String),
     /// It does not; it is tried again.
     Trouble(Trouble),
-    /// It works, but not well.
+    /// It works, but not well: the line, or a sensor.
     Noisy(String),
 }
 

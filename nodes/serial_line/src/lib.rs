@@ -9,7 +9,7 @@
 //! - [`Envelope`]: the line under all arrivals, which both stand on: delays only add.
 //!
 //! What trackers on such lines have in common is here as well, since nodes never depend on nodes: [`PoseTracker`], what
-//! turns records into poses; [`HalfSpace`], which side of the transmitter they are on; [`Rounds`], whose record it is; [`Tally`], what a decoder has seen; [`Step`], what a device
+//! turns records into poses; [`HalfSpace`], which side of the transmitter they are on; [`Rounds`], whose record it is; [`Tally`], what a decoder has seen; [`Noise`], whether a line is half dead; [`Step`], what a device
 //! is told; [`ConfigError`], a setting that cannot be; [`Emulated`], [`Speech`] and [`Faults`], a device that is played, and what goes wrong on real lines.
 //!
 //! With the feature `serial`:
@@ -37,7 +37,6 @@ mod line;
 mod line_error;
 #[cfg(feature = "node")]
 pub mod node;
-#[cfg(feature = "serial")]
 mod noise;
 mod pose_tracker;
 #[cfg(feature = "serial")]
@@ -65,6 +64,7 @@ pub use host_clock::HostClock;
 pub use line::{Chunk, Line, LineSettings};
 #[cfg(feature = "serial")]
 pub use line_error::LineError;
+pub use noise::Noise;
 pub use pose_tracker::{PoseTracker, SensorPose};
 #[cfg(feature = "serial")]
 pub use pty::{Pty, PtyError};

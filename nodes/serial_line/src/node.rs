@@ -3,11 +3,13 @@
 use crate::{Device, HostClock, LineSettings, News, PoseTracker, SensorPose, Session};
 use anyhow::Context as _;
 use kit::{Go, Node, Output};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use wire::{Clock, Header, Phase, Pose, topic};
 
 /// How long the line may be quiet before the operator is listened to.
 const NAP: Duration = Duration::from_millis(20);
+/// While a scan runs, the jitter that is taken off is told so often; and when it has ended.
+const JITTER_TOLD_EVERY: Duration = Duration::from_secs(10);
 
 /// A tracker and its device.
 pub struct Source<T, D> {
@@ -34,7 +36,8 @@ pub fn run<T: PoseTracker, D: Device<Record = T::Record>>(mut node: Node, source
     }
     let clock = HostClock::start();
     let session = Session::start(source.device, source.line, clock, tell);
-    let mut live = Live { tracker: source.tracker, session, outputs, clock, scan_clock: source.scan_clock };
+    let Source { tracker, sensors, scan_clock, .. } = source;
+    let mut live = Live { tracker, sensors, session, outputs, clock, scan_clock };
     if !node.wait_for_device(|| live.session.counts().records > 0) {
         return node.close();
     }
@@ -52,6 +55,7 @@ pub fn run<T: PoseTracker, D: Device<Record = T::Record>>(mut node: Node, source
 /// A tracker that is listened to.
 struct Live<T: PoseTracker> {
     tracker: T,
+    sensors: Vec<u8>,
     session: Session<T::Record>,
     outputs: Vec<Output<Pose>>,
     clock: HostClock,
@@ -69,6 +73,7 @@ impl<T: PoseTracker> Live<T> {
         let before = self.session.counts();
         let (zero_nanos, clock) = if self.scan_clock { (go.epoch_nanos, Clock::Scan) } else { (0, Clock::System) };
         let mut last = go.epoch_nanos - zero_nanos;
+        let mut told = Instant::now();
         // The device itself paces this source: its turn has always come.
         while node.wait_for_turn(go, -go.epoch_nanos) {
             let Some(heard) = self.next(NAP) else { continue };
@@ -84,6 +89,10 @@ impl<T: PoseTracker> Live<T> {
             last = last.max(header.stamp_nanos);
             self.outputs[sensor].send(pose)?;
             node.finished(&header)?;
+            if told.elapsed() >= JITTER_TOLD_EVERY {
+                told = Instant::now();
+                self.tell_jitter();
+            }
         }
         let after = self.session.counts();
         node.refuse("record that came in pieces", after.broken - before.broken);
@@ -91,14 +100,20 @@ impl<T: PoseTracker> Live<T> {
             let lost = after.overflowed - before.overflowed;
             tracing::error!("{lost} records were not fetched in time: the machine is too busy");
         }
-        if let Some((rms, most)) = self.tracker.jitter_nanos(0) {
-            tracing::info!("arrivals were freed of {:.2} ms rms of jitter, {:.1} ms at most", rms * 1e-6, most * 1e-6);
-        }
+        self.tell_jitter();
         let header = Header { scan: go.scan, phase: Phase::End, stamp_nanos: last + 1, clock, ..Header::default() };
         for output in &mut self.outputs {
             output.send(Pose::none(header, "the scan has ended"))?;
         }
         node.finished(&header)
+    }
+
+    fn tell_jitter(&self) {
+        for (sensor, number) in self.sensors.iter().enumerate() {
+            let Some((rms, most)) = self.tracker.jitter_nanos(sensor) else { continue };
+            let (rms, most) = (rms * 1e-6, most * 1e-6);
+            tracing::info!("sensor {number}: arrivals are freed of {rms:.2} ms rms of jitter, {most:.1} ms at most");
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! A device that is listened to, whatever happens to its line.
 
 use crate::device::{Arrived, Counts, Device, News, Trouble};
-use crate::noise::Noise;
 use crate::ring::Ring;
-use crate::{HostClock, Line, LineError, LineSettings, wire_nanos};
+use crate::{HostClock, Line, LineError, LineSettings, Noise, wire_nanos};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
@@ -134,7 +134,7 @@ impl<D: Device> Listener<D> {
         let mut unread: Vec<u8> = Vec::with_capacity(2 * SAMPLE_BYTES);
         let mut last_byte = Instant::now();
         let mut last_record = Instant::now();
-        let mut noise = Noise::new(self.device.tally().skipped_bytes);
+        let mut noise = Noise::default();
         loop {
             let chunk = match line.read(&mut buffer) {
                 Ok(chunk) => chunk,
@@ -142,6 +142,7 @@ impl<D: Device> Listener<D> {
             };
             if chunk.len > 0 {
                 last_byte = Instant::now();
+                let skipped = self.device.tally().skipped_bytes;
                 if self.take(&buffer[..chunk.len], chunk.arrival_nanos) > 0 {
                     last_record = last_byte;
                     self.named = None;
@@ -149,7 +150,15 @@ impl<D: Device> Listener<D> {
                 } else if unread.len() < SAMPLE_BYTES {
                     unread.extend(buffer[..chunk.len].iter().take(SAMPLE_BYTES));
                 }
-                noise.hear(chunk.len);
+                let skipped = self.device.tally().skipped_bytes - skipped;
+                if let Some(share) = noise.hear(chunk.arrival_nanos, chunk.len as u64, skipped) {
+                    (self.say)(News::Noisy(half_dead(&self.settings.path, share)));
+                }
+                match self.device.ask_why(line) {
+                    Ok(None) => {}
+                    Ok(Some(why)) => (self.say)(News::Noisy(why)),
+                    Err(trouble) => return trouble,
+                }
             }
             let most = self.device.most_silence();
             if last_byte.elapsed() > most {
@@ -157,14 +166,6 @@ impl<D: Device> Listener<D> {
             }
             if last_record.elapsed() > most {
                 return Trouble::Device(self.device.garbage(&unread));
-            }
-            if let Some(share) = noise.share(self.device.tally().skipped_bytes) {
-                let path = self.settings.path.display();
-                let text = format!(
-                    "{:.0} % of the bytes from {path} belong to no record: a shorter or better cable, or a lower baud rate",
-                    100.0 * share
-                );
-                (self.say)(News::Noisy(text));
             }
         }
     }
@@ -187,4 +188,12 @@ impl<D: Device> Listener<D> {
         }
         whole
     }
+}
+
+fn half_dead(path: &Path, share: f64) -> String {
+    format!(
+        "{:.0} % of the bytes from {} belong to no record: a shorter or better cable, or a lower baud rate",
+        100.0 * share,
+        path.display()
+    )
 }

@@ -7,12 +7,15 @@
 
 mod answers;
 mod commands;
+mod mood;
 mod power;
 mod unit;
 
+use crate::protocol::address::Addressing;
 use crate::protocol::reading::QuaternionSense;
-use crate::protocol::records::encode;
+use crate::protocol::records::{MOST_WORDS, encode};
 use commands::next_command;
+pub use mood::{Mood, TestMode};
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{Emulated, Speech};
 use unit::Unit;
@@ -22,6 +25,8 @@ use unit::Unit;
 pub struct EmulatorConfig {
     /// How many units, addresses from 1; 0: a bird alone.
     pub units: u8,
+    /// As the switches of the master have it.
+    pub addressing: Addressing,
     /// The address of the first unit with a sensor: those before it are extended range controllers.
     pub first_sensor: u8,
     /// Paces what it sends.
@@ -48,6 +53,7 @@ impl Default for EmulatorConfig {
     fn default() -> Self {
         Self {
             units: 0,
+            addressing: Addressing::Normal,
             first_sensor: 1,
             baud: 115_200,
             rate_hz: 103.0,
@@ -77,19 +83,6 @@ impl EmulatorConfig {
 /// Where the sensor of a unit is at a moment, in the frame of the transmitter.
 pub type World = Box<dyn Fn(u8, i64) -> (Vector3<f64>, UnitQuaternion<f64>) + Send>;
 
-/// What is wrong with it, for tests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mood {
-    /// Nothing.
-    Well,
-    /// It says nothing: standby, or a cable that is half open.
-    Silent,
-    /// Its switch 8 is on: it says OK, twice a second.
-    Test,
-    /// Its baud rate is another: nothing that it says is understood, nor what it hears.
-    WrongBaud,
-}
-
 /// A flock of birds.
 pub struct FlockEmulator {
     config: EmulatorConfig,
@@ -111,6 +104,8 @@ pub struct FlockEmulator {
     cycle: u64,
     cycle_nanos: i64,
     speech: Speech,
+    /// What a test mode has counted to.
+    counted: u8,
 }
 
 /// How long an auto-configuration takes; the manual bids to wait a little longer.
@@ -138,12 +133,8 @@ impl FlockEmulator {
             report_every: 1,
             cycle: 0,
             cycle_nanos: i64::MIN,
+            counted: 0,
         }
-    }
-
-    /// Makes it ill, or well again.
-    pub fn set_mood(&mut self, mood: Mood) {
-        self.mood = mood;
     }
 
     /// The parameters as the host left them: address, format's number, filters, hemisphere, mains.
@@ -165,15 +156,8 @@ impl FlockEmulator {
         while self.cycle_nanos + self.period_nanos() <= now_nanos {
             self.cycle_nanos += self.period_nanos();
             self.cycle += 1;
-            match self.mood {
-                _ if self.standby || self.cycle_nanos < self.busy_until => {}
-                Mood::Silent => {}
-                Mood::Test if self.cycle.is_multiple_of((self.rate_hz as u64 / 2).max(1)) => {
-                    self.speech.say(self.cycle_nanos, b"OK\r\n".to_vec());
-                }
-                Mood::Test => {}
-                Mood::WrongBaud => self.speech.say(self.cycle_nanos, vec![0x78, 0x00, 0x60, 0x1E, 0x06, 0x18]),
-                Mood::Well => self.measure(),
+            if !self.standby && self.cycle_nanos >= self.busy_until {
+                self.live(self.cycle_nanos);
             }
         }
     }
@@ -197,7 +181,10 @@ impl FlockEmulator {
         for unit in self.units.iter().filter(|unit| self.config.has_sensor(unit.address)) {
             let meant = self.group || unit.address == address || (address == 0 && unit.address <= 1);
             if meant {
-                let (record, layout) = unit.record(&self.config, self.group, flipped);
+                let (mut record, layout) = unit.record(&self.config, self.group, flipped);
+                if self.mood == Mood::Saturated {
+                    record.words = [0; MOST_WORDS];
+                }
                 self.speech.say(at_nanos, encode(&record, &layout));
             }
         }
@@ -206,7 +193,7 @@ impl FlockEmulator {
 
 impl Emulated for FlockEmulator {
     fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        if now_nanos < self.busy_until || self.standby || self.mood != Mood::Well {
+        if now_nanos < self.busy_until || self.standby || !self.understands(bytes, now_nanos) {
             return;
         }
         self.advance(now_nanos);

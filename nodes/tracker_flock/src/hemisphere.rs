@@ -1,6 +1,5 @@
 //! Which half of space a sensor is in.
 
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Half of the space around the transmitter: x away from its cable, y to the right, z down.
@@ -34,22 +33,4 @@ impl Hemisphere {
             Self::Right => [0x06, 0],
         }
     }
-
-    /// The axis, 0 to 2, and its sign in this half.
-    pub fn axis(self) -> (usize, f64) {
-        match self {
-            Self::Forward => (0, 1.0),
-            Self::Aft => (0, -1.0),
-            Self::Upper => (2, -1.0),
-            Self::Lower => (2, 1.0),
-            Self::Left => (1, -1.0),
-            Self::Right => (1, 1.0),
-        }
-    }
-}
-
-/// The position as a bird gives it that was told this half.
-pub fn reported(half: Hemisphere, position_m: Vector3<f64>) -> Vector3<f64> {
-    let (axis, sign) = half.axis();
-    if position_m[axis] * sign < 0.0 { -position_m } else { position_m }
 }

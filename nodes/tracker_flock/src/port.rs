@@ -1,5 +1,6 @@
 //! The flock at the other end of a line: set up from any state, and listened to.
 
+mod blind;
 mod examination;
 
 use crate::config::Config;
@@ -9,8 +10,10 @@ use crate::protocol::decoder::Decoder;
 use crate::protocol::modem;
 use crate::protocol::reading::{QuaternionSense, Reading, settle_sense};
 use crate::protocol::records::{Format, Layout, Record};
+use crate::protocol::test_mode::is_test_mode;
 use crate::tracker::Heard;
-use examination::{Examination, Found};
+use blind::Blind;
+use examination::{Examination, Found, Greeting};
 use serial_line::{Device, Heard as HeardAt, Line, LineSettings, Tally, Trouble};
 use std::time::Duration;
 
@@ -18,6 +21,8 @@ use std::time::Duration;
 pub(crate) const ANSWER: Duration = Duration::from_millis(300);
 /// So often a still sensor is looked for when the quaternion's sense is not known.
 const SENSE_TRIES: usize = 3;
+/// A sensor that measures nothing for so long is asked why.
+const BLIND_S: f64 = 0.5;
 
 /// A flock, as `serial_line::Session` listens to it.
 pub struct Flock {
@@ -26,13 +31,15 @@ pub struct Flock {
     decoder: Decoder,
     sense: QuaternionSense,
     opened_before: bool,
+    blind: Blind,
 }
 
 impl Flock {
     /// The flock of a configuration that was checked.
     pub fn new(config: Config) -> Self {
         let layout = Layout { metal: config.metal, ..Layout::plain(config.output) };
-        Self { layout, decoder: Decoder::new(layout), sense: QuaternionSense::AsMatrix, opened_before: false, config }
+        let (decoder, blind) = (Decoder::new(layout), Blind::new(&config.addresses()));
+        Self { layout, decoder, sense: QuaternionSense::AsMatrix, opened_before: false, blind, config }
     }
 
     /// How its port is opened.
@@ -41,16 +48,28 @@ impl Flock {
         LineSettings { path: self.config.port.clone(), baud: self.config.baud, rts: self.config.raise_rts, dtr: true }
     }
 
-    fn wake(&mut self, line: &mut Line) -> Result<(), Trouble> {
+    /// Makes it fly, and looks who is there.
+    fn wake(&mut self, line: &mut Line) -> Result<Greeting, Trouble> {
         let opened_before = std::mem::replace(&mut self.opened_before, true);
         if !line.has_modem_lines() {
-            return Ok(());
+            return self.greet(line);
         }
         for step in modem::wake(self.config.reset, opened_before) {
             line.set_rts(step.high || (self.config.raise_rts && !self.config.reset));
             line.pause(step.wait)?;
         }
-        Ok(())
+        match (self.greet(line), modem::second_chance(self.config.reset, opened_before)) {
+            (Err(Trouble::Device(_)), Some(starting_up)) => {
+                line.pause(starting_up)?;
+                self.greet(line)
+            }
+            (greeted, _) => greeted,
+        }
+    }
+
+    fn greet(&self, line: &mut Line) -> Result<Greeting, Trouble> {
+        self.hush(line)?;
+        Examination { line, config: &self.config }.greet()
     }
 
     /// Ends the stream and lets it run dry: answers to EXAMINE have no mark of their own.
@@ -109,10 +128,7 @@ impl Device for Flock {
     type Record = Heard;
 
     fn set_up(&mut self, line: &mut Line) -> Result<String, Trouble> {
-        self.wake(line)?;
-        self.hush(line)?;
-        let mut examination = Examination { line, config: &self.config };
-        let greeting = examination.greet()?;
+        let greeting = self.wake(line)?;
         if self.config.is_group() {
             line.carry_out(&[commands::group_mode(false)])?;
             line.carry_out(&commands::auto_configuration(self.config.unit_count()))?;
@@ -122,7 +138,7 @@ impl Device for Flock {
         line.carry_out(&commands::settings(&self.config))?;
         let mut words = found.words.clone();
         if let Some(complaint) = (Examination { line, config: &self.config }).complaint()? {
-            words += &format!(", which did not take all settings: {complaint}");
+            words += &complaint;
         }
         self.layout.group = false;
         if self.config.output.has_quaternion() {
@@ -144,10 +160,24 @@ impl Device for Flock {
         for (k, &byte) in bytes.iter().enumerate() {
             if let Some(record) = self.decoder.push(byte) {
                 let missed = self.decoder.take_missed();
+                let measured = Reading::of(&record, self.config.scale_inches, self.sense).is_ok();
+                self.blind.note(record.address, measured);
                 let heard = Heard { record, layout: self.layout, sense: self.sense };
                 each(HeardAt { record: heard, behind: bytes.len() - 1 - k, missed });
             }
         }
+    }
+
+    /// A bird says only when it is asked that a sensor is saturated, and can be asked only when its stream stands still.
+    fn ask_why(&mut self, line: &mut Line) -> Result<Option<String>, Trouble> {
+        let records = BLIND_S * self.config.rate_hz / f64::from(self.config.report_every);
+        let Some(address) = self.blind.whom(records.max(2.0) as u32) else { return Ok(None) };
+        self.hush(line)?;
+        let error = Examination { line, config: &self.config }.error_of(address)?;
+        self.decoder.expect(self.layout);
+        line.carry_out(&commands::stream(self.config.report_every))?;
+        let port = self.config.port.display();
+        Ok((error.code != 0).then(|| format!("unit {address} on {port} measures nothing: {}", error.sentence())))
     }
 
     fn tally(&self) -> Tally {
@@ -179,7 +209,7 @@ pub(crate) fn silence(config: &Config) -> String {
 
 pub(crate) fn garbage(config: &Config, sample: &[u8]) -> String {
     let port = config.port.display();
-    if sample.windows(2).any(|two| two == b"OK") {
+    if is_test_mode(sample) {
         return format!(
             "the bird on {port} is in test mode: set its switch 8 to fly (off), and FLY/STBY once to and fro"
         );

@@ -11,3 +11,4 @@ pub mod examine;
 pub mod modem;
 pub mod reading;
 pub mod records;
+pub mod test_mode;

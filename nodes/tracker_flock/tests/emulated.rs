@@ -8,11 +8,11 @@ mod harness;
 
 use harness::Listener;
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::{FaultsConfig, HostClock, News, PoseTracker as _, Pty, SensorPose};
+use serial_line::{FaultsConfig, HostClock, PoseTracker as _, Pty, SensorPose};
 use std::path::Path;
-use std::time::{Duration, Instant};
-use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, Mood, World};
+use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, Mood, TestMode, World};
 use tracker_flock::port::Flock;
+use tracker_flock::protocol::address::Addressing;
 use tracker_flock::protocol::reading::QuaternionSense;
 use tracker_flock::protocol::records::Format;
 use tracker_flock::{Config, FlockTracker};
@@ -84,6 +84,47 @@ fn ten_milliseconds_of_jitter_are_taken_off_the_stamps() {
     );
     // A quiet machine shows 0.3 to 0.45; a busy one looks at its line less often.
     assert!(all < 1.0, "{all} ms rms");
+    // Evenly spread over 10 ms.
+    let (rms, most) = rig.tracker.jitter_nanos(0).unwrap();
+    assert!(rms > 2.2e6 && most > 7e6, "{rms} ns rms, {most} ns at most were taken off");
+}
+
+#[test]
+fn a_sensor_that_is_saturated_in_mid_stream_is_named_and_the_others_go_on() {
+    let clock = HostClock::start();
+    let pty =
+        plugged(EmulatorConfig { units: 2, ..EmulatorConfig::default() }, FaultsConfig::default(), swing, None, clock);
+    let mut rig = listen(Config { sensors: vec![1, 2], ..on(&pty) }, clock);
+    rig.poses(20);
+    pty.device().set_mood(Mood::Saturated);
+    let told = rig.noisy();
+    assert!(told.contains("unit 1") && told.contains("the sensor is saturated: it is too near"), "{told}");
+    let lost = rig.poses(20).pop().unwrap().pose;
+    assert_eq!(lost.quality, Quality::Lost);
+    pty.device().set_mood(Mood::Well);
+    while rig.poses(1)[0].pose.quality == Quality::Lost {}
+    assert_eq!(rig.session.counts().starts, 1, "it was asked, and not set up anew");
+}
+
+#[test]
+fn more_than_fourteen_units_are_addressed_as_their_switches_have_it() {
+    let clock = HostClock::start();
+    for (addressing, units) in [(Addressing::Expanded, 17), (Addressing::SuperExpanded, 34)] {
+        let emulator = EmulatorConfig { units, addressing, first_sensor: units - 1, ..EmulatorConfig::default() };
+        let pty = plugged(emulator, FaultsConfig::default(), still, None, clock);
+        let config = Config { sensors: vec![units - 1, units], addressing, output: Format::PositionAngles, ..on(&pty) };
+        let mut rig = listen(config.clone(), clock);
+        let found = rig.streaming();
+        assert!(found.contains(&format!("sensors on units [{}, {units}]", units - 1)), "{found}");
+        let poses = rig.poses(40);
+        assert!(poses.windows(2).all(|pair| pair[0].sensor != pair[1].sensor), "they speak in turn");
+        let set: Vec<u8> = pty.device().settings().into_iter().filter(|unit| unit.4 == 50).map(|unit| unit.0).collect();
+        assert_eq!(set, [units - 1, units], "line frequency of those that were set");
+        drop(rig);
+        let few = Config { addressing: Addressing::Normal, sensors: vec![1, 2], units: 2, ..config };
+        let told = listen(few, clock).trouble();
+        assert!(told.contains(&format!("set `addressing = \"{}\"`", addressing.name())), "{told}");
+    }
 }
 
 #[test]
@@ -208,9 +249,14 @@ fn each_illness_is_its_own_sentence_and_is_survived() {
     let pty = plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, None, clock);
     let mut rig = listen(on(&pty), clock);
     rig.poses(20);
-    for (mood, words) in
-        [(Mood::Silent, "says nothing"), (Mood::Test, "test mode"), (Mood::WrongBaud, "no record of a bird")]
-    {
+    for (mood, words) in [
+        (Mood::Silent, "says nothing"),
+        (Mood::Test(TestMode::Output), "test mode"),
+        (Mood::Test(TestMode::Echo), "test mode"),
+        (Mood::Test(TestMode::Read), "test mode"),
+        (Mood::Test(TestMode::Block), "test mode"),
+        (Mood::WrongBaud, "no record of a bird"),
+    ] {
         rig.survives(words, || pty.device().set_mood(mood), || pty.device().set_mood(Mood::Well));
     }
 }
@@ -221,9 +267,8 @@ fn a_half_dead_line_is_named_and_goes_on() {
     let faults = FaultsConfig { seed: 5, lost_ppm: 30_000, ..FaultsConfig::default() };
     let pty = plugged(EmulatorConfig::default(), faults, swing, None, clock);
     let mut rig = listen(on(&pty), clock);
-    let noisy =
-        |(_, news): &(Instant, News)| matches!(news, News::Noisy(words) if words.contains("belong to no record"));
-    assert!(std::iter::from_fn(|| rig.news.recv_timeout(Duration::from_secs(10)).ok()).any(|news| noisy(&news)));
+    let told = rig.noisy();
+    assert!(told.contains("belong to no record"), "{told}");
     rig.poses(20);
 }
 

@@ -55,6 +55,23 @@ fn stamps_are_true_to_half_a_millisecond_at_ten_milliseconds_of_jitter() {
 }
 
 #[test]
+fn stamps_are_as_true_when_only_some_of_the_measurements_are_sent() {
+    for (report_every, seconds) in [(2, 20), (8, 40), (32, 120)] {
+        let config = Config { report_every, ..config() };
+        let faults = FaultsConfig { seed: 8, jitter_nanos: 10_000_000, ..FaultsConfig::default() };
+        let poses = played(&config, EmulatorConfig::default(), faults, seconds, pendulum);
+        let expected = seconds as usize * 100 / usize::from(report_every);
+        assert!(poses.len().abs_diff(expected) <= 2, "every {report_every}.: {} of {expected}", poses.len());
+        let stamps: Vec<i64> = poses.iter().map(|pose| pose.pose.header.stamp_nanos).collect();
+        let step_ms = (stamps[stamps.len() - 1] - stamps[stamps.len() - 11]) as f64 * 1e-7;
+        assert!((step_ms - 10.0 * f64::from(report_every)).abs() < 0.5, "every {report_every}.: {step_ms} ms");
+        let rms = rms(&stamp_errors_ms(&poses[poses.len() / 2..]));
+        println!("every {report_every}. of 100 Hz: {rms:.3} ms rms");
+        assert!(rms < 1.5, "every {report_every}.: {rms} ms rms");
+    }
+}
+
+#[test]
 fn what_the_filters_against_the_mains_take_is_taken_off() {
     for (ac_narrow_filter, ac_wide_filter) in [(true, false), (false, true), (true, true)] {
         let config = Config { ac_narrow_filter, ac_wide_filter, ..config() };

@@ -87,12 +87,8 @@ impl Config {
     /// Refuses what the device cannot do.
     pub fn check(&self) -> Result<(), ConfigError> {
         let refuse = |key, value: String, wanted| Err(ConfigError { node: NODE, key, value, wanted });
-        if self.port.as_os_str().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
-        }
-        if !BAUDS.contains(&self.baud) {
-            return refuse("baud", self.baud.to_string(), "1200 to 115200, as its switches have it");
-        }
+        let bauds = "1200 to 115200, as its switches have it";
+        ConfigError::unless_line(NODE, &self.port, (self.baud, |baud| BAUDS.contains(&baud), bauds))?;
         let ascending = self.stations.windows(2).all(|pair| pair[0] < pair[1]);
         let there = |station: &u8| (1..=self.family.most_stations()).contains(station);
         if self.stations.is_empty() || !ascending || !self.stations.iter().all(there) {

@@ -5,5 +5,6 @@
 
 pub mod commands;
 pub mod decoder;
+pub mod errors;
 pub mod records;
 pub mod status;

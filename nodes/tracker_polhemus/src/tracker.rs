@@ -1,6 +1,7 @@
 //! Records to poses, each with its stamp and what is known of its error.
 
 use crate::config::{Config, DataSheet};
+use crate::protocol::errors::sentence;
 use crate::protocol::records::{Layout, Record};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serial_line::{
@@ -98,7 +99,8 @@ impl PolhemusTracker {
         }
         if record.error != b' ' {
             let letter = char::from(record.error);
-            reasons.push(format!("station {} reports `{letter}`: see the errors in its manual", record.station));
+            let why = sentence(self.config.family, record.error).unwrap_or("see the errors in its manual");
+            reasons.push(format!("station {} reports `{letter}`: {why}", record.station));
         }
         if undelayed.is_some_and(|undelayed| !undelayed.settled) {
             reasons.push("the clock is not settled yet".to_owned());

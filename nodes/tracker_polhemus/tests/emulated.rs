@@ -76,6 +76,19 @@ fn each_illness_is_its_own_sentence_and_is_survived() {
 }
 
 #[test]
+fn a_half_dead_line_is_named_and_goes_on() {
+    for family in [Family::Fastrak, Family::Liberty] {
+        let clock = HostClock::start();
+        let faults = FaultsConfig { seed: 5, lost_ppm: 15_000, ..FaultsConfig::default() };
+        let pty = plugged(EmulatorConfig::of(family), faults, None, clock);
+        let mut rig = listen(Config { port: pty.path().to_owned(), family, ..Config::default() }, clock);
+        let told = rig.noisy();
+        assert!(told.contains("belong to no record"), "{told}");
+        rig.poses(20);
+    }
+}
+
+#[test]
 fn a_port_that_is_pulled_and_plugged_in_again_goes_on() {
     let clock = HostClock::start();
     let folder = tempfile::tempdir().unwrap();

@@ -78,7 +78,16 @@ fn sigma_and_quality_say_what_distance_distortion_and_the_device_do() {
     assert!(bent.quality == Quality::Degraded && bent.reason.contains("level 300"));
     assert!((bent.rotation_sigma_rad[0] - 3.0 * 0.15f64.to_radians()).abs() < 1e-9);
     let ill = at(0.5, |emulator| emulator.error = b'u');
-    assert!(ill.quality == Quality::Degraded && ill.reason.contains("reports `u`"));
+    assert!(ill.quality == Quality::Degraded && ill.reason.contains("reports `u`: see the errors in its manual"));
+    for (letter, why) in
+        [(b'j', "saturated: the receiver is too near"), (b'k', "too far from the source"), (b'l', "no signal")]
+    {
+        let config = config(Family::Fastrak, &[1]);
+        let emulator = EmulatorConfig { error: letter, ..EmulatorConfig::of(Family::Fastrak) };
+        let world = |_| Vector3::new(0.1, 0.0, 0.0);
+        let ill = played(&config, emulator, FaultsConfig::default(), 2, world).pop().unwrap().pose;
+        assert!(ill.quality == Quality::Degraded && ill.reason.contains(why), "{}", ill.reason);
+    }
 }
 
 #[test]

@@ -37,6 +37,11 @@ impl<T: PoseTracker> Listener<T> {
         self.first(is_trouble)
     }
 
+    /// What is told while it streams, but not well.
+    pub fn noisy(&self) -> String {
+        self.first(|news| if let News::Noisy(words) = news { Some(words) } else { None })
+    }
+
     /// What was found when it began to stream.
     pub fn streaming(&self) -> String {
         self.first(|news| if let News::Streaming(words) = news { Some(words) } else { None })

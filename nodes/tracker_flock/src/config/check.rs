@@ -12,16 +12,8 @@ impl Config {
     /// Refuses what a flock cannot do.
     pub fn check(&self) -> Result<(), ConfigError> {
         let refuse = |key, value: String, wanted| Err(ConfigError { node: NODE, key, value, wanted });
-        if self.port.as_os_str().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "name the serial port; `limn devices` lists them");
-        }
-        if !BAUDS.contains(&self.baud) {
-            return refuse(
-                "baud",
-                self.baud.to_string(),
-                "2400, 4800, 9600, 19200, 38400, 57600 or 115200, as its switches",
-            );
-        }
+        let bauds = "2400, 4800, 9600, 19200, 38400, 57600 or 115200, as its switches";
+        ConfigError::unless_line(NODE, &self.port, (self.baud, |baud| BAUDS.contains(&baud), bauds))?;
         let ascending = self.sensors.windows(2).all(|pair| pair[0] < pair[1]);
         if !ascending || self.sensors.iter().any(|&address| address == 0 || address > self.addressing.most()) {
             return refuse(

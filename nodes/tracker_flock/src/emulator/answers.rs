@@ -1,8 +1,10 @@
 //! What the flock does when it is told, and says when it is asked.
 
 use super::commands::Command;
+use super::mood::{Mood, SATURATED};
 use super::unit::Unit;
 use super::{CONFIGURING_NANOS, FlockEmulator};
+use crate::protocol::address::Addressing;
 
 impl FlockEmulator {
     pub(super) fn obey(&mut self, command: Command, now: i64) {
@@ -66,11 +68,16 @@ impl FlockEmulator {
             1 => vec![3, 67],
             2 => vec![25, 0],
             7 => ((self.rate_hz * 256.0) as u16).to_le_bytes().to_vec(),
+            10 if self.mood == Mood::Saturated => vec![SATURATED],
             10 => vec![std::mem::take(&mut self.error)],
             15 if !self.config.has_sensor(unit.address) => b"6DERC     ".to_vec(),
             15 => b"6DFOB     ".to_vec(),
             16 => vec![std::mem::take(&mut self.error), 2],
-            19 => vec![0],
+            19 => vec![match self.config.addressing {
+                Addressing::Normal => 0,
+                Addressing::Expanded => 1,
+                Addressing::SuperExpanded => 3,
+            }],
             35 => vec![u8::from(self.group)],
             36 => {
                 // Accessible, running, with a sensor, with a transmitter.
@@ -78,7 +85,8 @@ impl FlockEmulator {
                     let sensor = self.config.has_sensor(unit.address);
                     0xC0 | u8::from(sensor) << 5 | u8::from(unit.address == 1)
                 };
-                (0..14).map(|k| self.units.get(k).map_or(0, of)).collect()
+                let most = usize::from(self.config.addressing.most());
+                (0..most).map(|k| self.units.get(k).map_or(0, of)).collect()
             }
             other => unit.examine(other),
         }

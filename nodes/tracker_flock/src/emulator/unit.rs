@@ -1,7 +1,6 @@
 //! One bird of the flock: its settings, and what it measures.
 
 use super::EmulatorConfig;
-use crate::hemisphere::{Hemisphere, reported};
 use crate::protocol::reading::{Scale, words_of};
 use crate::protocol::records::{Format, Layout, Record};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -24,8 +23,6 @@ pub(super) struct Unit {
     measured: Option<(Vector3<f64>, UnitQuaternion<f64>)>,
 }
 
-const HALVES: [Hemisphere; 6] =
-    [Hemisphere::Forward, Hemisphere::Aft, Hemisphere::Upper, Hemisphere::Lower, Hemisphere::Left, Hemisphere::Right];
 /// Where the filter's ranges end, in inches.
 const RANGE_INCHES: [f64; 6] = [17.0, 22.0, 27.0, 34.0, 42.0, 54.0];
 
@@ -130,9 +127,22 @@ impl Unit {
                 layout,
             );
         };
-        let half = HALVES.into_iter().find(|half| half.code() == self.hemisphere).unwrap_or_default();
-        let position = reported(half, position) * if flipped { -1.0 } else { 1.0 };
+        let position = reported(self.hemisphere, position) * if flipped { -1.0 } else { 1.0 };
         let record = words_of(self.format, self.scale, config.quaternion, &position, &rotation);
         (Record { metal: config.metal, address: self.address, ..record }, layout)
     }
+}
+
+/// The position as a bird gives it that was told a half of space: axis and sign, as the manual has them. The driver has a
+/// table of its own.
+fn reported(half: [u8; 2], position: Vector3<f64>) -> Vector3<f64> {
+    let along = match half {
+        [0x06, 0] => position.y,
+        [0x06, _] => -position.y,
+        [0x0C, 0] => position.z,
+        [0x0C, _] => -position.z,
+        [_, 0] => position.x,
+        [..] => -position.x,
+    };
+    if along < 0.0 { -position } else { position }
 }

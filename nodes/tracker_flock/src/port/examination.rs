@@ -2,6 +2,7 @@
 
 use super::{ANSWER, garbage, silence};
 use crate::config::Config;
+use crate::protocol::address::{Addressing, addressed};
 use crate::protocol::errors::{DeviceError, Severity};
 use crate::protocol::examine::{self, Parameter, Status, UnitStatus};
 use serial_line::{Line, Trouble};
@@ -11,10 +12,15 @@ use std::time::{Duration, Instant};
 const EAVESDROP: Duration = Duration::from_millis(550);
 /// Group mode came with this revision.
 const GROUP_REVISION: [u8; 2] = [3, 33];
+/// Questions above number 16 came with this one.
+const ADDRESSING_REVISION: [u8; 2] = [3, 45];
+/// The code of the error that a setting leaves which a revision does not know.
+const UNKNOWN_COMMAND: u8 = 6;
 
 /// Who answered.
 pub(super) struct Greeting {
     words: String,
+    revision: [u8; 2],
 }
 
 /// What is there.
@@ -34,12 +40,16 @@ pub(super) struct Examination<'a> {
 impl Examination<'_> {
     /// Looks whether somebody is there, and who.
     pub fn greet(&mut self) -> Result<Greeting, Trouble> {
-        let Some(status) = self.two(Parameter::Status)? else { return Err(self.eavesdrop()?) };
-        let model = examine::model(&self.ask(Parameter::Model)?.unwrap_or_default());
-        let revision = self.two(Parameter::Revision)?.unwrap_or_default();
-        if model.is_empty() || !model.chars().all(|letter| letter.is_ascii_alphanumeric()) {
-            return Err(Trouble::Device(garbage(self.config, model.as_bytes())));
+        let mut heard = self.raw(Parameter::Status)?;
+        let Ok(status) = <[u8; 2]>::try_from(&heard[..]) else { return Err(self.eavesdrop(heard)?) };
+        let letters = self.raw(Parameter::Model)?;
+        let model = examine::model(&letters);
+        let whole = letters.len() == Parameter::Model.answer_bytes(self.config.addressing);
+        if !whole || model.is_empty() || !model.chars().all(|letter| letter.is_ascii_alphanumeric()) {
+            heard.extend(letters);
+            return Err(Trouble::Device(garbage(self.config, &heard)));
         }
+        let revision = self.two(Parameter::Revision)?.unwrap_or_default();
         let error = self.last_error()?;
         if error.severity() == Severity::Fatal {
             return Err(self.failed(error));
@@ -59,14 +69,17 @@ impl Examination<'_> {
         if error.code != 0 {
             words += &format!(", which had reported: {}", error.sentence());
         }
-        Ok(Greeting { words })
+        Ok(Greeting { words, revision })
     }
 
     /// Looks which units are there, behind the auto-configuration.
     pub fn units(&mut self, greeting: Greeting) -> Result<Found, Trouble> {
-        let words = greeting.words;
+        let Greeting { words, revision } = greeting;
         if !self.config.is_group() {
             return Ok(Found { words, with_sensor: vec![0] });
+        }
+        if revision >= ADDRESSING_REVISION {
+            self.check_addressing()?;
         }
         let configured = self.two(Parameter::Status)?.is_some_and(|status| Status::of(status).is_configured());
         if !configured {
@@ -92,15 +105,32 @@ impl Examination<'_> {
         Ok(Found { words: format!("{words}, sensors on units {with_sensor:?}"), with_sensor })
     }
 
+    /// How many bytes tell the state of the flock depends on it.
+    fn check_addressing(&mut self) -> Result<(), Trouble> {
+        let answer = self.ask(Parameter::Addressing)?;
+        let said = answer.and_then(|answer| Addressing::from_code(*answer.first()?));
+        let Some(said) = said.filter(|said| *said != self.config.addressing) else { return Ok(()) };
+        let (port, name) = (self.config.port.display(), said.name());
+        Err(Trouble::Device(format!(
+            "the switches of the flock on {port} say {name} addressing: set `addressing = \"{name}\"`, or the switches"
+        )))
+    }
+
     /// What it says to the settings; an old revision does not know all of them, and measures all the same.
-    pub fn complaint(&mut self) -> Result<Option<&'static str>, Trouble> {
+    pub fn complaint(&mut self) -> Result<Option<String>, Trouble> {
         let error = self.last_error()?;
-        Ok((error.code != 0).then(|| error.sentence()))
+        let about = if error.code == UNKNOWN_COMMAND { "did not take all settings" } else { "reports" };
+        Ok((error.code != 0).then(|| format!(", which {about}: {}", error.sentence())))
     }
 
     fn last_error(&mut self) -> Result<DeviceError, Trouble> {
-        let code = self.ask(Parameter::Error)?.and_then(|answer| answer.first().copied());
-        Ok(DeviceError { code: code.unwrap_or(0), detail: 0 })
+        self.error_of(0)
+    }
+
+    /// The last error of a unit; 0 is whoever is on the line.
+    pub fn error_of(&mut self, address: u8) -> Result<DeviceError, Trouble> {
+        let answer = self.line.ask(&addressed(address, &Parameter::Error.question()), 1, ANSWER)?;
+        Ok(DeviceError { code: answer.first().copied().unwrap_or(0), detail: 0 })
     }
 
     fn failed(&self, error: DeviceError) -> Trouble {
@@ -108,8 +138,8 @@ impl Examination<'_> {
     }
 
     /// Nobody answered as a bird does: what is there instead?
-    fn eavesdrop(&mut self) -> Result<Trouble, Trouble> {
-        let (mut heard, started) = (Vec::new(), Instant::now());
+    fn eavesdrop(&mut self, mut heard: Vec<u8>) -> Result<Trouble, Trouble> {
+        let started = Instant::now();
         let mut buffer = [0u8; 256];
         while started.elapsed() < EAVESDROP {
             let chunk = self.line.read(&mut buffer)?;
@@ -125,8 +155,13 @@ impl Examination<'_> {
 
     /// The answer, when it came whole.
     fn ask(&mut self, parameter: Parameter) -> Result<Option<Vec<u8>>, Trouble> {
+        let answer = self.raw(parameter)?;
+        Ok((answer.len() == parameter.answer_bytes(self.config.addressing)).then_some(answer))
+    }
+
+    /// What came of an answer.
+    fn raw(&mut self, parameter: Parameter) -> Result<Vec<u8>, Trouble> {
         let len = parameter.answer_bytes(self.config.addressing);
-        let answer = self.line.ask(&parameter.question(), len, ANSWER)?;
-        Ok((answer.len() == len).then_some(answer))
+        Ok(self.line.ask(&parameter.question(), len, ANSWER)?)
     }
 }

@@ -25,6 +25,15 @@ impl Addressing {
         }
     }
 
+    /// As a launch file names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Expanded => "expanded",
+            Self::SuperExpanded => "super_expanded",
+        }
+    }
+
     /// As parameter 19 tells it.
     pub fn from_code(code: u8) -> Option<Self> {
         match code {

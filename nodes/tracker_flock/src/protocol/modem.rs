@@ -27,3 +27,10 @@ pub fn wake(reset: bool, opened_before: bool) -> Vec<Rts> {
         (false, false) => Vec::new(),
     }
 }
+
+/// How long to wait before a bird that does not answer is asked once more, before anything is said of it: opening the port
+/// for the first time may have reset it as well, and nobody knows how the cable is wired. A bird that was not reset answers
+/// at once, and is not waited for.
+pub fn second_chance(reset: bool, opened_before: bool) -> Option<Duration> {
+    (!reset && !opened_before).then_some(START_UP)
+}
