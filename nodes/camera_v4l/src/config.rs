@@ -1,7 +1,7 @@
 //! Which camera, how it is set, and how its stamps are read.
 
 use crate::exposure::ExposureConfig;
-use crate::granted::SIZE;
+use crate::granted::{SIZE, STRIDE};
 use crate::look::LightConfig;
 use crate::pixels::DriverFormat;
 use crate::stamp::StampAt;
@@ -31,8 +31,9 @@ pub struct Config {
     pub white_balance_k: Option<i64>,
     /// Other controls by the names that `limn devices` prints: `controls = { sharpness = 0 }`.
     pub controls: BTreeMap<String, i64>,
-    /// What the driver may set otherwise than asked: `format`, `rate`, `exposure`, `gain`, `white_balance`, or the name of a
-    /// control. Anything else that differs is an error.
+    /// What the driver may set otherwise than asked: `format`, `rate`, `exposure`, `gain`, `white_balance`, the name of a
+    /// control, or an automatic that stays on (`exposure_automatic`, `exposure_slows_rate`, `gain_automatic`,
+    /// `white_balance_automatic`). Anything else that differs is an error.
     pub may_differ: Vec<String>,
     /// The step of `gain` that stands for no gain; none: nobody knows, and pictures say 1.
     pub gain_unit: Option<f64>,
@@ -101,8 +102,9 @@ impl Config {
         if !(2..=32).contains(&self.buffers) {
             return refuse("buffers", self.buffers.to_string(), "2 to 32");
         }
-        if self.may_differ.iter().any(|name| name == SIZE) {
-            return refuse("may_differ", format!("{:?}", self.may_differ), "not `size`: another size fits no rig");
+        if self.may_differ.iter().any(|name| name == SIZE || name == STRIDE) {
+            let wanted = "not `size`, which would fit no rig, nor `stride`, which would be no picture";
+            return refuse("may_differ", format!("{:?}", self.may_differ), wanted);
         }
         let (exposure, light) = (&self.exposure, &self.light);
         let most_us = exposure.most_us;

@@ -1,27 +1,15 @@
-//! What can be set on a camera, by number and by name.
+//! The controls of a camera: written, and read back.
 
 use crate::config::Config;
 use crate::exposure::Setting;
 use crate::granted::Granted;
+use crate::trouble::Trouble;
 use crate::v4l_device::calmly;
+use crate::writes::{EXPOSURE_ABSOLUTE, GAIN, STEP_US, Write, automatics, writes, writes_of};
 use devices::control_key;
 use std::collections::BTreeMap;
+use std::io;
 use v4l::control::{Control, Description, Value};
-
-/// V4L2_CID_* of <linux/v4l2-controls.h>.
-const EXPOSURE_AUTO: u32 = 0x009a_0901;
-const EXPOSURE_ABSOLUTE: u32 = 0x009a_0902;
-const EXPOSURE_SLOWS_RATE: u32 = 0x009a_0903;
-const GAIN_AUTO: u32 = 0x0098_0912;
-pub(crate) const GAIN: u32 = 0x0098_0913;
-const WHITE_BALANCE_AUTO: u32 = 0x0098_090c;
-pub(crate) const WHITE_BALANCE: u32 = 0x0098_091a;
-
-/// V4L2_EXPOSURE_MANUAL.
-const MANUAL: i64 = 1;
-const OFF: i64 = 0;
-/// EXPOSURE_ABSOLUTE counts in these.
-const STEP_US: f64 = 100.0;
 
 /// The controls of a camera by the names that launch files use.
 pub(crate) struct Controls(BTreeMap<String, u32>);
@@ -33,6 +21,15 @@ impl Controls {
         Self(list.iter().map(|control: &Description| (control_key(&control.name), control.id)).collect())
     }
 
+    /// Sets all that is configured; what the driver says to those of its controls that it does not set.
+    pub(crate) fn apply(&self, config: &Config, device: &v4l::Device) -> BTreeMap<String, String> {
+        let list = writes(config, &self.0);
+        let refused = list.into_iter().filter_map(|write| Some((carry_out(device, &write).err()?, write)));
+        // Another camera has not got it: that shows where it is read back.
+        let own = refused.filter(|(_, write)| self.0.values().any(|id| *id == write.id));
+        own.map(|(error, write)| (write.name, error.to_string())).collect()
+    }
+
     /// What these are now.
     pub(crate) fn values<'a>(
         &self,
@@ -41,6 +38,11 @@ impl Controls {
     ) -> BTreeMap<String, Option<i64>> {
         names.map(|name| (name.clone(), self.0.get(name).and_then(|id| read(device, *id)))).collect()
     }
+}
+
+/// What the automatics are that should be off; those that the camera has.
+pub(crate) fn automatic_values(config: &Config, device: &v4l::Device) -> BTreeMap<String, i64> {
+    automatics(config).into_iter().filter_map(|write| Some((write.name, read(device, write.id)?))).collect()
 }
 
 /// A control now; none when there is none, or it is no number.
@@ -56,35 +58,9 @@ pub(crate) fn exposure_us(device: &v4l::Device) -> Option<f64> {
     read(device, EXPOSURE_ABSOLUTE).map(|steps| steps as f64 * STEP_US)
 }
 
-/// Whether it took effect is told by reading it back. One at a time: two classes in one call are refused.
-fn write(device: &v4l::Device, id: u32, value: i64) {
-    let _ = calmly(|| device.set_control(Control { id, value: Value::Integer(value) }));
-}
-
-/// Sets all that is configured. Automatics go first: while they are on, what they hold cannot be set, and nobody says so.
-pub(crate) fn apply(config: &Config, device: &v4l::Device, controls: &Controls) {
-    if let Some(us) = config.exposure_us {
-        write(device, EXPOSURE_AUTO, MANUAL);
-        write(device, EXPOSURE_SLOWS_RATE, OFF);
-        write(device, EXPOSURE_ABSOLUTE, steps(us));
-    }
-    if let Some(gain) = config.gain {
-        write(device, GAIN_AUTO, OFF);
-        write(device, GAIN, gain);
-    }
-    if let Some(kelvin) = config.white_balance_k {
-        write(device, WHITE_BALANCE_AUTO, OFF);
-        write(device, WHITE_BALANCE, kelvin);
-    }
-    for (name, &value) in &config.controls {
-        if let Some(id) = controls.0.get(name) {
-            write(device, *id, value);
-        }
-    }
-}
-
-fn steps(us: f64) -> i64 {
-    ((us / STEP_US).round() as i64).max(1)
+/// Whether it took effect is told by reading it back as well: what is out of range, or held by an automatic, is no error.
+fn carry_out(device: &v4l::Device, write: &Write) -> io::Result<()> {
+    calmly(|| device.set_control(Control { id: write.id, value: Value::Integer(write.value) }))
 }
 
 /// Exposure and gain as pictures carry them.
@@ -97,11 +73,13 @@ pub(crate) fn setting(config: &Config, granted: &Granted) -> Setting {
 }
 
 /// Sets exposure, and gain where its unit is known; what they are then.
-pub(crate) fn set(config: &Config, device: &v4l::Device, wanted: Setting, before: Setting) -> Setting {
-    write(device, EXPOSURE_ABSOLUTE, steps(wanted.exposure_us));
+pub(crate) fn set(config: &Config, device: &v4l::Device, wanted: Setting, before: Setting) -> Result<Setting, Trouble> {
+    for write in writes_of(config, wanted) {
+        carry_out(device, &write)
+            .map_err(|error| Trouble::opening(&config.device, "setting exposure and gain", &error))?;
+    }
     let exposure_us = exposure_us(device).unwrap_or(before.exposure_us);
-    let Some(unit) = config.gain_unit else { return Setting { exposure_us, ..before } };
-    write(device, GAIN, (wanted.gain * unit).round() as i64);
+    let Some(unit) = config.gain_unit else { return Ok(Setting { exposure_us, ..before }) };
     let gain = read(device, GAIN).map_or(before.gain, |gain| gain as f64 / unit);
-    Setting { exposure_us, gain }
+    Ok(Setting { exposure_us, gain })
 }

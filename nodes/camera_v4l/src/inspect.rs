@@ -24,7 +24,8 @@ pub fn inspect(node: &Path) -> Option<Result<Details, String>> {
     Some(Ok(Details { driver, modes: modes(&device), controls }))
 }
 
-fn modes(device: &v4l::Device) -> Vec<Mode> {
+/// Its formats, sizes and rates.
+pub(crate) fn modes(device: &v4l::Device) -> Vec<Mode> {
     let mut modes = Vec::new();
     for format in calmly(|| device.enum_formats()).unwrap_or_default() {
         for size in calmly(|| device.enum_framesizes(format.fourcc)).unwrap_or_default() {

@@ -60,6 +60,19 @@ impl LightJudge {
     }
 }
 
+/// A band that the lamp makes brighter by `contrast`, and that is brighter by `above` now; in stops.
+struct Reached {
+    above: f32,
+    contrast: f32,
+}
+
+impl Reached {
+    /// 0 without the lamp, 1 with it.
+    fn place(&self) -> f32 {
+        self.above / self.contrast
+    }
+}
+
 /// Light of each band, in stops.
 #[derive(Debug, Clone, Copy)]
 struct Levels {
@@ -78,23 +91,22 @@ impl Levels {
 
     /// Compares a picture with the newest ones of either kind, and remembers it as one of them.
     fn lamp(&mut self, now: &Bands, least_stops: f32) -> Lamp {
-        let places = self.places(now, least_stops);
-        let is_on = self.by_jump(now, least_stops).unwrap_or_else(|| self.by_level(now, least_stops));
+        let reached = self.reached(now, least_stops);
+        let is_on = self.by_jump(now, least_stops).unwrap_or_else(|| self.by_level(now, &reached));
         self.before = (*now, is_on);
         match is_on {
-            true if places.iter().all(|place| *place > STRAYS) => Lamp::On,
-            false if places.iter().all(|place| *place < 1.0 - STRAYS) => Lamp::Off,
+            true if reached.iter().all(|band| band.place() > STRAYS) => Lamp::On,
+            false if reached.iter().all(|band| band.place() < 1.0 - STRAYS) => Lamp::Off,
             _ => Lamp::Switched,
         }
     }
 
-    /// Where each band lies between its levels without the lamp (0) and with it (1). Where the lamp does not reach, a band
-    /// says nothing.
-    fn places(&self, now: &Bands, least_stops: f32) -> Vec<f32> {
+    /// The bands that the lamp reaches; where it does not, a band says nothing.
+    fn reached(&self, now: &Bands, least_stops: f32) -> Vec<Reached> {
         let bright = self.bright.unwrap_or(self.dark);
-        let contrasts = (0..BANDS).map(|band| (band, bright[band] - self.dark[band]));
-        let reached = contrasts.filter(|(_, contrast)| *contrast >= least_stops);
-        reached.map(|(band, contrast)| (now[band] - self.dark[band]) / contrast).collect()
+        let bands = (0..BANDS)
+            .map(|band| Reached { above: now[band] - self.dark[band], contrast: bright[band] - self.dark[band] });
+        bands.filter(|band| band.contrast >= least_stops).collect()
     }
 
     /// What jumps up has the lamp, and what jumps down shows that the one before had it, whatever was believed till now.
@@ -115,20 +127,13 @@ impl Levels {
         Some(is_on)
     }
 
-    fn by_level(&mut self, now: &Bands, least_stops: f32) -> bool {
-        let Some(bright) = self.bright.filter(|bright| most(bright, &self.dark) >= least_stops) else {
+    fn by_level(&mut self, now: &Bands, reached: &[Reached]) -> bool {
+        let Some(bright) = self.bright.filter(|_| !reached.is_empty()) else {
             (self.bright, self.dark) = (None, *now);
             return false;
         };
-        let (mut above, mut contrasts) = (0.0, 0.0);
-        for band in 0..BANDS {
-            let contrast = bright[band] - self.dark[band];
-            if contrast >= least_stops {
-                above += now[band] - self.dark[band];
-                contrasts += contrast;
-            }
-        }
-        let is_on = above > MIDDLE * contrasts;
+        let sum = |of: fn(&Reached) -> f32| reached.iter().map(of).sum::<f32>();
+        let is_on = sum(|band| band.above) > MIDDLE * sum(|band| band.contrast);
         self.follow(now, bright, is_on);
         is_on
     }

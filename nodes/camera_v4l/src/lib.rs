@@ -10,7 +10,7 @@
 //!   system clock, which is compared again with every picture.
 //! - [`look`], [`LightJudge`]: laser and lamp in turn are told by the picture itself.
 //! - [`next_setting`], [`ExposureLoop`]: the exposure that the stripe wants.
-//! - [`differences`]: asked for and set.
+//! - [`writes`]: what is written into a camera, in its order. [`differences`]: asked for and set. [`found`]: both in words.
 //! - [`Capture`]: a thread that keeps the newest picture; a camera that is silent, broken or unplugged is named, and opened
 //!   again by its name, for ever.
 //!
@@ -56,6 +56,7 @@ mod controls;
 mod device;
 mod exposure;
 mod follow;
+mod found;
 mod granted;
 mod host;
 #[cfg(feature = "v4l")]
@@ -71,6 +72,7 @@ mod stamp;
 mod trouble;
 #[cfg(feature = "v4l")]
 mod v4l_device;
+mod writes;
 
 pub use camera::{CameraV4l, Refused};
 pub use capture::{Capture, Counts, News};
@@ -79,6 +81,7 @@ pub use config::{Config, ConfigError};
 pub use device::{Device, Exposed, Opener};
 pub use exposure::{ExposureConfig, Setting, StripeStatistics, next_setting};
 pub use follow::ExposureLoop;
+pub use found::{found, offers, sentence};
 pub use granted::{Difference, Granted, allowance, differences, part};
 pub use host::{clock_readings, monotonic_nanos};
 #[cfg(feature = "v4l")]
@@ -91,3 +94,4 @@ pub use stamp::{DriverStamp, StampAt, StampError, middle_of_exposure};
 pub use trouble::Trouble;
 #[cfg(feature = "v4l")]
 pub use v4l_device::V4lOpener;
+pub use writes::{Write, automatics, writes, writes_of};

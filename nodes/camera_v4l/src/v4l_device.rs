@@ -5,11 +5,15 @@ use crate::config::Config;
 use crate::controls::{self, Controls};
 use crate::device::{Device, Exposed, Opener};
 use crate::exposure::Setting;
-use crate::granted::{Difference, Granted, allowance, differences, part};
+use crate::found::{found, offers, sentence};
+use crate::granted::{Difference, Granted, SIZE, allowance, differences, part};
 use crate::host::monotonic_nanos;
+use crate::inspect::modes;
 use crate::pixels::{DriverFormat, Layout};
 use crate::stamp::DriverStamp;
 use crate::trouble::Trouble;
+use crate::writes::{GAIN, WHITE_BALANCE};
+use std::collections::BTreeMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -46,11 +50,14 @@ impl V4lOpener {
         let device = open(&config.device)?;
         set_mode(config, &device)?;
         let controls = Controls::of(&device);
-        controls::apply(config, &device, &controls);
-        let granted = read_back(config, &device, &controls)?;
+        let refused = controls.apply(config, &device);
+        let granted = Granted { refused, ..read_back(config, &device, &controls)? };
         let (allowed, refused) = part(config, differences(config, &granted));
         if !refused.is_empty() {
-            let (what, allow) = (sentence(&refused), allowance(&refused));
+            let is_mode = |difference: &Difference| ["format", SIZE, "rate"].contains(&difference.name.as_str());
+            let mode = refused.iter().any(is_mode);
+            let offers = if mode { offers(&modes(&device), config.format.fourcc()) } else { String::new() };
+            let (what, allow) = (sentence(&refused) + &offers, allowance(&refused));
             return Err(Trouble::Differs { device: config.device.clone(), what, allow });
         }
         let format = DriverFormat::of_fourcc(granted.fourcc).ok_or_else(|| Trouble::Format {
@@ -135,40 +142,19 @@ fn read_back(config: &Config, device: &v4l::Device, controls: &Controls) -> Resu
     let rate = |interval: Fraction| f64::from(interval.denominator) / f64::from(interval.numerator.max(1));
     let rate_hz = calmly(|| device.params()).ok().map(|params| rate(params.interval)).filter(|rate| *rate > 0.0);
     Ok(Granted {
+        driver: calmly(|| device.query_caps()).map(|caps| caps.driver).unwrap_or_default(),
         fourcc: format.fourcc.repr,
         width: format.width,
         height: format.height,
         stride: format.stride,
         rate_hz,
         exposure_us: controls::exposure_us(device),
-        gain: controls::read(device, controls::GAIN),
-        white_balance_k: controls::read(device, controls::WHITE_BALANCE),
+        gain: controls::read(device, GAIN),
+        white_balance_k: controls::read(device, WHITE_BALANCE),
         controls: controls.values(device, config.controls.keys()),
+        automatics: controls::automatic_values(config, device),
+        refused: BTreeMap::new(),
     })
-}
-
-fn sentence(differences: &[Difference]) -> String {
-    differences.iter().map(Difference::to_string).collect::<Vec<_>>().join("; ")
-}
-
-fn found(config: &Config, layout: &Layout, granted: &Granted, allowed: &[Difference]) -> String {
-    let Layout { format, width, height, stride } = layout;
-    let mut text = format!("{}: {format} {width}x{height}, rows of {stride} bytes", config.device.display());
-    if let Some(rate_hz) = granted.rate_hz {
-        text += &format!(", {rate_hz:.2} Hz");
-    }
-    match (config.exposure_us, granted.exposure_us) {
-        (Some(_), Some(us)) => text += &format!(", exposed for {us} us"),
-        (Some(us), None) => text += &format!(", exposed for {us} us, as the configuration has it"),
-        (None, _) => text += ", exposure left to the camera: set exposure_us, or stamps are off by half of it",
-    }
-    if let Some(gain) = granted.gain {
-        text += &format!(", gain {gain}");
-    }
-    if !allowed.is_empty() {
-        text += &format!(" ({})", sentence(allowed));
-    }
-    text
 }
 
 struct V4lCamera {
@@ -233,7 +219,7 @@ impl Device for V4lCamera {
     }
 
     fn set(&mut self, setting: Setting) -> Result<Setting, Trouble> {
-        self.setting = controls::set(&self.config, &self.device, setting, self.setting);
+        self.setting = controls::set(&self.config, &self.device, setting, self.setting)?;
         Ok(self.setting)
     }
 }

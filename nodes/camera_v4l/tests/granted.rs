@@ -36,6 +36,7 @@ fn set() -> Granted {
         gain: Some(255),
         white_balance_k: None,
         controls: [("sharpness".to_owned(), Some(2)), ("no_such_thing".to_owned(), None)].into(),
+        ..Granted::default()
     }
 }
 
@@ -81,6 +82,7 @@ fn what_was_granted_is_no_difference() {
         gain: Some(40),
         white_balance_k: Some(4600),
         controls: [("sharpness".to_owned(), Some(0)), ("no_such_thing".to_owned(), Some(3))].into(),
+        ..Granted::default()
     };
     assert_eq!(differences(&config, &granted), []);
     // What nobody asked for may be anything.
