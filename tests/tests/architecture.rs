@@ -65,7 +65,7 @@ fn each_crate_knows_only_what_it_may() {
         (SERIAL_LINE, vec!["wire", "kit"]),
         (DEVICES, vec![]),
         // The proof of camera_v4l on a real driver.
-        ("on_vivid", vec!["camera_v4l", DEVICES, "wire"]),
+        ("on_vivid", vec!["camera_v4l", DEVICES, "wire", "bus", "kit"]),
         ("report", vec!["wire", "geometry", "formats"]),
     ]);
     for node in NODES {

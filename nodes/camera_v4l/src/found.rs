@@ -2,7 +2,7 @@
 
 use crate::config::Config;
 use crate::granted::{Difference, Granted};
-use crate::pixels::Layout;
+use crate::pixels::{DriverFormat, Layout};
 use crate::stamp::StampAt;
 use devices::{Mode, Size};
 
@@ -60,8 +60,9 @@ pub fn offers(modes: &[Mode], fourcc: [u8; 4]) -> String {
     if !of_format.is_empty() {
         return format!("; in {format} it gives {}", of_format.join(", "));
     }
-    let mut formats: Vec<&str> = modes.iter().map(|mode| mode.format.as_str()).collect();
-    formats.dedup();
+    let given = |format: &DriverFormat| modes.iter().any(|mode| mode.format == format.to_string());
+    let formats: Vec<String> =
+        DriverFormat::ALL.iter().filter(|format| given(format)).map(DriverFormat::to_string).collect();
     if formats.is_empty() { String::new() } else { format!("; it gives {}", formats.join(", ")) }
 }
 

@@ -143,6 +143,6 @@ fn what_to_ask_for_instead_is_told() {
         mode("YUYV", Size::Between { least: (16, 16), most: (640, 480) }, &[]),
     ];
     assert_eq!(offers(&modes, *b"YUYV"), "; in YUYV it gives 1280x800 at up to 10 Hz, 16x16 to 640x480");
-    assert_eq!(offers(&modes, *b"GREY"), "; it gives MJPG, YUYV");
+    assert_eq!(offers(&modes, *b"GREY"), "; it gives YUYV, MJPG");
     assert_eq!(offers(&[], *b"GREY"), "");
 }

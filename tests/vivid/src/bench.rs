@@ -44,6 +44,14 @@ impl Bench {
         Ok(())
     }
 
+    /// How a knob stands, by another program.
+    pub fn read(&self, knob: &str) -> anyhow::Result<i64> {
+        let output = Command::new("v4l2-ctl").args(["-d", "/dev/video0", "-C", knob]).output();
+        let text = String::from_utf8(output.context("starting v4l2-ctl")?.stdout)?;
+        let value = text.rsplit(':').next().map(str::trim).and_then(|value| value.parse().ok());
+        value.with_context(|| format!("v4l2-ctl -C {knob}: {text:?}"))
+    }
+
     /// A configuration that vivid can fulfil.
     pub fn config(&self, format: DriverFormat) -> Config {
         Config { device: self.by_id.clone(), format, rate_hz: 25.0, exposure_us: None, ..Config::default() }

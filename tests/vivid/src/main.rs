@@ -1,10 +1,11 @@
-//! Runs inside the machine that `tests/vivid/run` boots: the camera node's code before the kernel's driver of test
+//! Runs inside the machine that `tests/vivid/run` boots: the camera node and its parts before the kernel's driver of test
 //! pictures, vivid. `v4l2-ctl` is the independent hand that turns vivid's knobs.
 //!
 //! What is not asserted, because vivid does not keep to it under emulation: exact rates, and numbers without gaps.
 
 mod bench;
 mod faults;
+mod node;
 mod pictures;
 mod settings;
 
@@ -22,10 +23,14 @@ const PROOFS: &[(&str, Proof)] = &[
     ("the newest picture is held, however slow the node is", pictures::are_fresh),
     ("dropped and damaged buffers are counted", faults::dropped_and_damaged),
     ("a stream that breaks is started again", faults::broken_stream),
-    ("an unplugged camera is opened again by its name", faults::unplugged),
+    ("an unplugged camera is opened again by its name, and set again", faults::unplugged),
+    ("the node sends its pictures on a bus, and goes on behind an unplugging", node::sends_its_pictures),
 ];
 
 fn main() -> anyhow::Result<()> {
+    if std::env::args().nth(1).as_deref() == Some("node") {
+        return node::run();
+    }
     let bench = Bench::new()?;
     for (claim, proof) in PROOFS {
         proof(&bench).map_err(|error| error.context(format!("NOT PROVEN: {claim}")))?;
