@@ -157,6 +157,7 @@ fn told(evidence: &Evidence, took_s: f64) -> String {
     row("hand-eye rotation, degrees", format!("{:.3?}{held}", hand_eye.turn_deg));
     row("frames kept", evidence.frames_kept.to_string());
     row("frames left out", evidence.dropped.len().to_string());
+    row("frames that a flat table helped", evidence.frames_on_table.to_string());
     evidence.refused.iter().for_each(|refused| row("refused", format!("{} x {}", refused.count, refused.reason)));
     evidence.notices.iter().for_each(|notice| row("NOTE", refine::sentence(notice)));
     text

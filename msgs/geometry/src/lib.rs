@@ -20,11 +20,13 @@ mod distance;
 mod index;
 mod mesh;
 mod pose;
+mod random;
 mod raster;
 mod rig;
 mod sample;
 mod sheet;
 pub mod smooth;
+mod table;
 mod trajectory;
 
 pub use align::{AlignError, Alignment, align};
@@ -35,11 +37,13 @@ pub use distance::{
 pub use index::{Closest, Hit, MeshIndex};
 pub use mesh::{MeshError, TriangleMesh};
 pub use pose::{interpolate, rigid_from_wire, rigid_to_wire};
+pub use random::{uniform, word};
 pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
 pub use sample::{SurfaceSample, sample_surface};
 pub use sheet::{LaserSheet, SheetError};
 pub use smooth::{FixedLagSmoother, Silence, SmoothCounts, SmoothError, SmoothTrajectory, Smoothing, Wait};
+pub use table::{Facing, Table, TableSearch};
 pub use trajectory::{NoPose, TimedPose, TrajectoryBuffer};
 
 /// Metres from millimetres.

@@ -1,6 +1,6 @@
 //! Points spread evenly over a surface.
 
-use crate::{MeshError, MeshIndex, TriangleMesh};
+use crate::{MeshError, MeshIndex, TriangleMesh, uniform};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
@@ -62,12 +62,4 @@ fn sample_triangles(triangles: &[[Point3<f64>; 3]], count: usize, seed: u64) -> 
         }
     };
     (0..count).into_par_iter().map(sample).collect()
-}
-
-/// The `counter`-th number of this seed in [0, 1): SplitMix64 (Steele, Lea, Flood 2014), which can be entered anywhere.
-fn uniform(seed: u64, counter: u64) -> f64 {
-    let mut z = seed.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }

@@ -3,7 +3,7 @@
 use crate::ball::{Ball, Sample, steps_per_metre};
 use crate::grid::{CentreGrid, distance_squared};
 use crate::movable::{END, MovablePoints, SETTLED};
-use crate::{Config, ConfigError, Table, TablePlane, output};
+use crate::{Config, ConfigError, Table, output, table};
 use nalgebra::Vector3;
 use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan, ScanPoint};
 
@@ -137,12 +137,8 @@ impl BallClusterer {
             (0..self.state.balls.len() as u32).partition(|&id| self.state.balls[id as usize].count >= least);
         let mut points: Vec<CloudPoint> = output::points(&self.state, &kept, least);
         let mut refused = self.take_refused();
-        if self.config.table == Table::Remove
-            && let Some(table) = TablePlane::find(&points)
-        {
-            let all = points.len();
-            points.retain(|ball| table.height_m(ball) > table.margin_m());
-            refuse(&mut refused, "ball of the table", (all - points.len()) as u64);
+        if self.config.table == Table::Remove {
+            refuse(&mut refused, "ball of the table", table::take_away(&mut points) as u64);
         }
         let count = outliers.iter().map(|&id| u64::from(self.state.balls[id as usize].count)).sum();
         refuse(&mut refused, &format!("outlier: in a ball of fewer than {least} points"), count);

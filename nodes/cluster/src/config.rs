@@ -20,7 +20,7 @@ pub struct Config {
     pub publish_every_s: f64,
 }
 
-/// What becomes of the largest plane (see [`crate::TablePlane`]).
+/// What becomes of the largest plane (see [`geometry::Table`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Table {

@@ -16,7 +16,7 @@
 //! mean sigma, over the root of their count: points are taken as independent, so an error of the pose that all points of
 //! a picture share is averaged too well where few pictures saw the ball. Scans bring no colour, so there is none.
 //!
-//! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`TablePlane`]): what the paper
+//! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`geometry::Table`]): what the paper
 //! edited by hand.
 //!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
@@ -55,4 +55,3 @@ mod table;
 
 pub use clusterer::{BallClusterer, Held};
 pub use config::{Config, ConfigError, Table};
-pub use table::TablePlane;

@@ -2,13 +2,13 @@
 
 use crate::banded::Banded;
 use crate::gather::Gathered;
-use crate::random::uniform;
 use crate::scene::{Problem, right_jacobian};
 use crate::schur::{Room, frame_data, product};
 use crate::spline::Knots;
 use crate::surfel::{Member, Patch};
 use crate::tracker::Smoothed;
 use crate::unknowns::Unknowns;
+use geometry::uniform;
 use geometry::{Smoothing, TimedPose};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 

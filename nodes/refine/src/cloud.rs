@@ -1,7 +1,7 @@
 //! A random part of the points in the world, sorted into the cells of a grid.
 
-use crate::random::uniform;
 use crate::scene::{FramePose, Problem};
+use geometry::uniform;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 

@@ -33,6 +33,9 @@ pub struct Config {
     pub clock_ms: f64,
     /// How smooth a hand's movement is, but for its tremor: a share of the penalty by which the tracker was smoothed.
     pub smoothness: f64,
+    /// Where most of what stands on nothing else is one plane, it is a table, and flat when stripes are straight on it: all
+    /// strokes that saw it agree by it. False when what the thing stands on is only nearly flat.
+    pub flat_table: bool,
     /// Frames whose residual stays above so many medians are left out.
     pub most_residual: f64,
     /// Which points, which seeds: the same seed gives the same bytes.
@@ -63,6 +66,7 @@ impl Default for Config {
             hand_eye_deg: 1.5,
             clock_ms: 20.0,
             smoothness: 1.0,
+            flat_table: true,
             most_residual: 3.0,
             seed: 1,
             most_gap_ms: 100.0,

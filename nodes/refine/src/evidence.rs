@@ -28,6 +28,8 @@ pub struct Evidence {
     pub refused: Vec<RefusedInput>,
     /// Points left out because other strokes looked through where they hang; 0 in live revisions.
     pub seen_through: usize,
+    /// Frames that saw the flat table on which the thing stands, and agree by it; 0 without one, and in live revisions.
+    pub frames_on_table: usize,
     /// Each frame that was kept.
     pub frames: Vec<FrameEvidence>,
 }

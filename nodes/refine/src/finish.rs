@@ -79,6 +79,7 @@ pub(crate) fn finish(
         frames_without_pose: gathered.frames.len() - frames.len(),
         refused: refused(gathered),
         seen_through: carved,
+        frames_on_table: solution.frames_on_table,
         frames: out.kept,
     };
     Ok(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })

@@ -15,7 +15,7 @@
 //! weights). The quadrics' own parameters are eliminated exactly (`schur`), or what was scanned first would hold its
 //! errors fast; this is bundle adjustment with surface patches for landmarks (Triggs et al. 2000; for planes Liu and
 //! Zhang 2021, "BALM"). The system is never formed: conjugate gradients multiply by it surfel by surfel (`pcg`,
-//! `precondition`). The schedule goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all
+//! `precondition`). Where the thing stands on a flat table, all strokes that saw it agree by it (`table`). The schedule goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all
 //! readings in the prior (`prior`). In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`):
 //! where the scan lies in the world no surface tells.
 //!
@@ -87,7 +87,6 @@ mod pcg;
 mod precondition;
 mod prior;
 mod quadric;
-mod random;
 mod refinement;
 mod refiner;
 mod scene;
@@ -99,6 +98,7 @@ mod solver;
 mod spline;
 mod step;
 mod surfel;
+mod table;
 #[cfg(feature = "node")]
 mod tell;
 mod testimony;

@@ -4,6 +4,7 @@
 //! found by the tick before is where the next begins; new time begins at the smoothed tracker. Points and surfels are
 //! bounded, so that a tick's time hardly grows with the scan.
 
+use crate::Config;
 use crate::evidence::{Evidence, Notice, Residual};
 use crate::gather::Gathered;
 use crate::judge::judge;
@@ -14,12 +15,11 @@ use crate::scene::Problem;
 use crate::schedule::{LIVE, judging_live};
 use crate::solver::{self, Noise};
 use crate::spline::Knots;
-use crate::step::step;
+use crate::step::{StepPlan, step};
 use crate::testimony::{clock, hand_eye_held, refused, tracker};
 use crate::tracker::Smoothed;
 use crate::unknowns::{BIAS, Free, GLOBALS, SPLINES, Unknowns};
-use crate::{Config, random::word};
-use geometry::Smoothing;
+use geometry::{Smoothing, word};
 use nalgebra::{Isometry3, Vector3};
 
 /// What goes on from tick to tick.
@@ -83,6 +83,7 @@ pub(crate) fn tick(
         frames_without_pose: gathered.frames.len() - frames.len(),
         refused: refused(gathered),
         seen_through: 0,
+        frames_on_table: 0,
         frames: out.kept,
     };
     live.unknowns = Some(problem.unknowns);
@@ -99,7 +100,8 @@ impl Live {
             let seed = word(config.seed, self.ticks * LIVE.len() as u64 + level as u64);
             let scale_m = self.scale_m[level].unwrap_or(f64::INFINITY);
             let before = x.clone();
-            match step(problem, prior, &stage.plan(free, scale_m, seed), x) {
+            let plan = StepPlan { table: config.flat_table, ..stage.plan(free, scale_m, seed) };
+            match step(problem, prior, &plan, x) {
                 Some(seen) => self.scale_m[level] = Some(2.0 * seen.sigma_m),
                 None => (*x, taken_back) = (before, true),
             }

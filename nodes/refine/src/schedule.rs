@@ -58,6 +58,7 @@ impl Stage {
             points: self.points,
             scale_m: bounds,
             free,
+            table: false,
             cg_steps: CG_STEPS,
             seed,
         }

@@ -6,13 +6,13 @@ use crate::guard::coloured;
 use crate::guard::moved::{self, Divided};
 use crate::precondition::spline_block;
 use crate::prior::{Beliefs, Prior};
-use crate::random::word;
 use crate::scene::{Placed, Problem};
 use crate::schedule::{CG_STEPS, SCHEDULE, SECOND_PASS, STAGE_SEEDS, STAGES, Stage, wide};
 use crate::spline::Knots;
 use crate::step::{Seen, StepPlan, look, step};
 use crate::tracker::Smoothed;
 use crate::unknowns::{Free, NOISE, Row, Unknowns};
+use geometry::word;
 use nalgebra::{Isometry3, Vector3};
 
 /// How the tracker's noise is taken.
@@ -137,7 +137,8 @@ pub(crate) fn run_stage(
     for i in 0..MOST_STEPS {
         let seed = word(config.seed, STAGE_SEEDS * number as u64 + i as u64);
         let now = x.clone();
-        let plan = StepPlan { cg_steps: cg_steps(problem), ..stage.plan(free, *scale_m, seed) };
+        let plan =
+            StepPlan { table: config.flat_table, cg_steps: cg_steps(problem), ..stage.plan(free, *scale_m, seed) };
         let Some(seen) = step(problem, prior, &plan, x) else {
             *x = now;
             return progress.map(|progress| Progress { taken_back: true, ..progress });
@@ -177,6 +178,8 @@ pub(crate) struct Solution {
     /// See [`coloured`]; `None` when too little is held.
     pub excess: Option<f64>,
     pub taken_back: bool,
+    /// In the last stage, see [`Seen`].
+    pub frames_on_table: usize,
 }
 
 /// Above this the noise is not white: 0.14 to 0.43 is what white noise and fields give, 0.66 and more what noise of 0.3 s
@@ -203,7 +206,7 @@ pub(crate) fn run<'a>(
         let problem = problem(config, &noise, gathered, smoothed, frames, body_from_camera);
         let prior = prior(config, &noise, &problem);
         let (mut x, mut scale_m, mut taken_back) = (vec![0.0; problem.unknowns.len()], f64::INFINITY, false);
-        let (mut again, mut moved) = (false, None);
+        let (mut again, mut moved, mut frames_on_table) = (false, None, 0);
         for (number, &stage) in SCHEDULE.iter().enumerate() {
             if number >= SECOND_PASS {
                 scale_m = f64::INFINITY;
@@ -217,6 +220,7 @@ pub(crate) fn run<'a>(
             let progress = run_stage(config, &problem, &prior, (number, stage), free, &mut scale_m, &mut x);
             let Some(progress) = progress else { continue };
             taken_back |= progress.taken_back;
+            frames_on_table = progress.seen.frames_on_table;
             if number == 1 && noise == white {
                 excess_found = excess(&problem, &prior, &progress.seen, &x);
                 again = excess_found.is_some_and(|excess| excess > COLOURED);
@@ -226,7 +230,7 @@ pub(crate) fn run<'a>(
             }
         }
         if !again {
-            return (problem, Solution { x, free, moved, noise, excess: excess_found, taken_back });
+            return (problem, Solution { x, free, moved, noise, excess: excess_found, taken_back, frames_on_table });
         }
         noise = Noise::coloured(config);
     }

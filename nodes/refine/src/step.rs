@@ -7,6 +7,7 @@ use crate::prior::Prior;
 use crate::scene::{FramePose, Problem};
 use crate::schur::{FRAMES_A_TASK, FrameData, Room, frame_data, product, robust_sigma_m};
 use crate::surfel::{Patch, SurfelPlan, build};
+use crate::table;
 use crate::unknowns::{Free, Row};
 use nalgebra::Vector6;
 use rayon::prelude::*;
@@ -20,6 +21,8 @@ pub(crate) struct StepPlan {
     /// Bounds of the robust scale.
     pub scale_m: [f64; 2],
     pub free: Free,
+    /// Whether a flat table is looked for.
+    pub table: bool,
     pub cg_steps: usize,
     pub seed: u64,
 }
@@ -36,6 +39,8 @@ pub(crate) struct Seen {
     pub sampled: usize,
     /// And what share of all that is.
     pub share: f64,
+    /// Frames that saw a flat table; 0 where none was looked for, or found.
+    pub frames_on_table: usize,
 }
 
 /// Each point is a member of several surfels, and surfels are not the surface: their word counts this much.
@@ -46,11 +51,15 @@ const LEAST_SIGMA_M: f64 = 1e-4;
 /// Surfels and their data at these poses.
 pub(crate) fn look(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> Seen {
     let cloud = Cloud::sample(problem, poses, plan.points, plan.surfels.radius_m, plan.seed);
-    let patches = build(&cloud, poses, &plan.surfels);
+    let mut patches = build(&cloud, poses, &plan.surfels);
     let sigma_m = robust_sigma_m(&patches);
     let weight = DATA_SHARE / sigma_m.max(0.5 * plan.scale_m[0]).max(LEAST_SIGMA_M).powi(2);
+    let looked_for = plan.table && plan.surfels.scale_m <= table::SCALE_M;
+    let table = looked_for.then(|| table::patch(&cloud, poses)).flatten();
+    let frames_on_table = table.as_ref().map_or(0, table::frames);
+    patches.extend(table);
     let frames = frame_data(&patches, weight, poses.len());
-    Seen { patches, frames, sigma_m, weight, sampled: cloud.points.len(), share: cloud.share }
+    Seen { patches, frames, sigma_m, weight, sampled: cloud.points.len(), share: cloud.share, frames_on_table }
 }
 
 /// Adds one step to the unknowns `x`. Returns what was seen before the step, or `None` when there is no finite step.

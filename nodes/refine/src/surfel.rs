@@ -6,8 +6,8 @@
 
 use crate::cloud::{Cloud, CloudPoint, cell};
 use crate::quadric::{Local, TERMS, fit, plane};
-use crate::random::word;
 use crate::scene::FramePose;
+use geometry::word;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 

@@ -58,6 +58,7 @@ fn a_scan_of_twenty_seconds_is_held_by_what_is_known_of_hands() {
         let sweep = Sweep::new(&Spec { seconds: 20.0, ..Spec::named("P", seed) });
         let result = refined(&sweep);
         assert!(result.fit.thing_rms < 0.5, "{}", result.fit);
+        assert!(result.refinement.evidence.frames_on_table > 40, "the table has its say");
     }
 }
 

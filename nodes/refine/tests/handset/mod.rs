@@ -31,13 +31,15 @@ pub struct Sweep {
     pub single: bool,
     /// Height of the steps in the table.
     pub steps_m: f64,
+    /// The table is a dish of this radius; flat without.
+    pub dish_m: Option<f64>,
     /// White noise of the tracker, metres and radians on each axis.
     pub noise: [f64; 2],
 }
 
 impl Default for Sweep {
     fn default() -> Self {
-        Self { seconds: 24.0, crossing: true, single: false, steps_m: 0.0, noise: [5e-4, 5e-3] }
+        Self { seconds: 24.0, crossing: true, single: false, steps_m: 0.0, dish_m: None, noise: [5e-4, 5e-3] }
     }
 }
 
@@ -92,7 +94,8 @@ impl Sweep {
                 let flat = Point3::new(0.0, 6e-4 * f64::from(i), 0.2);
                 let below = way * flat;
                 let odd = (below.x / 0.03).floor() as i64 + (below.y / 0.03).floor() as i64;
-                let height = if odd.rem_euclid(2) == 1 { self.steps_m } else { 0.0 };
+                let step = if odd.rem_euclid(2) == 1 { self.steps_m } else { 0.0 };
+                let height = step + self.dish_m.map_or(0.0, |radius| below.coords.xy().norm_squared() / (2.0 * radius));
                 let range = 0.2 - height + 5e-5 * noise((k * 1000) as u64 + i.unsigned_abs() as u64 * 2 + 7);
                 let position = flat.coords * (range / 0.2);
                 ProfilePoint {
