@@ -25,6 +25,10 @@ pub struct Kind {
     pub takes: fn(&Inputs) -> Vec<String>,
     /// The keys that it publishes.
     pub gives: fn(&Inputs) -> Vec<String>,
+    /// What else it subscribes to, as its configuration says.
+    pub takes_more: fn(&Inputs, &Value) -> Vec<String>,
+    /// What else it publishes, as its configuration says.
+    pub gives_more: fn(&Inputs, &Value) -> Vec<String>,
     /// Its configuration when nothing was said.
     pub defaults: fn() -> Value,
     /// Refuses a configuration that it cannot run with.

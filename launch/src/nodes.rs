@@ -1,6 +1,7 @@
 //! All nodes that are built into this program: the one table that `limn node`, launch files and `limn graph` read.
 
-use crate::kind::{Kind, check, defaults};
+use crate::kind::{Inputs, Kind, check, defaults};
+use serde_json::Value;
 use wire::topic;
 
 /// What most nodes have in common; each entry below says where it differs.
@@ -14,6 +15,8 @@ const PLAIN: Kind = Kind {
     paths: &[],
     takes: |_| Vec::new(),
     gives: |_| Vec::new(),
+    takes_more: |_, _| Vec::new(),
+    gives_more: |_, _| Vec::new(),
     defaults: || serde_json::Value::Null,
     check: |_| Ok(()),
     run: |_| Ok(()),
@@ -69,6 +72,7 @@ pub const KINDS: &[Kind] = &[
         source: true,
         takes: |_| vec![topic::run_phase().key],
         gives: |node| vec![topic::pose(&node.instance).key],
+        gives_more: |node, config| further_sensors(node, config, "sensors"),
         defaults: defaults::<tracker_flock::Config>,
         check: |config| check(config, tracker_flock::Config::check),
         run: tracker_flock::node::run,
@@ -80,6 +84,7 @@ pub const KINDS: &[Kind] = &[
         source: true,
         takes: |_| vec![topic::run_phase().key],
         gives: |node| vec![topic::pose(&node.instance).key],
+        gives_more: |node, config| further_sensors(node, config, "stations"),
         defaults: defaults::<tracker_polhemus::Config>,
         check: |config| check(config, tracker_polhemus::Config::check),
         run: tracker_polhemus::node::run,
@@ -116,8 +121,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "fuse",
         about: "several receivers on one handset made one pose, better turned than any of them",
-        // Which ones, its configuration says; the further stations of a Polhemus are no other node's to give.
-        takes: |_| vec![topic::pose("*").key],
+        takes_more: |_, config| receivers(config),
         gives: |node| vec![topic::pose(&node.instance).key],
         defaults: defaults::<fuse::Config>,
         check: |config| check(config, fuse::Config::check),
@@ -275,6 +279,17 @@ fn replay_file(config: &replay::node::Config) -> Result<(), &'static str> {
     } else {
         Ok(())
     }
+}
+
+/// A tracker's first sensor goes by its instance, each other one by its number behind that (`serial_line::node::Source`).
+fn further_sensors(node: &Inputs, config: &Value, key: &str) -> Vec<String> {
+    let numbers = config[key].as_array().into_iter().flatten().filter_map(Value::as_u64);
+    numbers.skip(1).map(|number| topic::pose(&format!("{}_{number}", node.instance)).key).collect()
+}
+
+fn receivers(config: &Value) -> Vec<String> {
+    let trackers = config["receivers"].as_array().into_iter().flatten();
+    trackers.filter_map(|receiver| Some(topic::pose(receiver["tracker"].as_str()?).key)).collect()
 }
 
 /// The kind of a name.

@@ -132,8 +132,8 @@ fn node(plan: &mut Plan, kinds: &[Kind], name: &str, setting: &Setting, section:
             .map(|program| anyhow::Ok(Exec { program, args: section.texts("args")?.unwrap_or_default() }))
             .transpose()?,
         machine: machine(plan, name, section)?,
-        takes: kind.map_or(takes, |kind| (kind.takes)(&inputs)),
-        gives: kind.map_or(gives, |kind| (kind.gives)(&inputs)),
+        takes: kind.map_or(takes, |kind| [(kind.takes)(&inputs), (kind.takes_more)(&inputs, &config)].concat()),
+        gives: kind.map_or(gives, |kind| [(kind.gives)(&inputs), (kind.gives_more)(&inputs, &config)].concat()),
         kind: kind_name,
         inputs,
         config,

@@ -39,3 +39,15 @@ fn bench_can_be_started() {
     let plan = Plan::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("bench.toml"), &[], nodes::KINDS).unwrap();
     assert_eq!(plan.warnings, Vec::<String>::new());
 }
+
+#[test]
+fn its_camera_is_set_as_a_webcam_wants_it_and_to_the_size_of_its_rig() {
+    let (bench, rig) = (table("bench.toml"), table("handset.toml"));
+    let camera = &bench["nodes"]["camera"]["config"];
+    assert_eq!(bench["rig"]["file"].as_str(), Some("handset.toml"));
+    for key in ["width", "height"] {
+        assert_eq!(camera[key], rig["camera"][key]);
+    }
+    assert_eq!(camera["stamp_at"].as_str(), Some("end"));
+    assert!(camera.get("white_balance_k").is_some() && camera.get("exposure_us").is_some());
+}

@@ -182,12 +182,26 @@ fn every_command_explains_itself() {
     let help = desk.success(&["--help"]);
     for command in [
         "up", "scan", "top", "topics", "echo", "hz", "graph", "config", "stripe", "cluster", "surface", "compare",
-        "node",
+        "node", "devices", "emulate",
     ] {
         assert!(help.contains(&format!("  {command} ")), "{command} is not in the help");
         assert!(desk.success(&[command, "--help"]).len() > 100, "{command}");
     }
     assert!(desk.success(&["up", "--help"]).contains("limn up launch/demo.toml"));
+}
+
+/// Whatever is plugged into the machine that tests: the listing itself is tested on machines that are folders.
+#[test]
+fn devices_lists_what_is_plugged_in() {
+    let page = Desk::new(&[]).success(&["devices"]);
+    let links = |folder: &str| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let cameras = links("/dev/v4l/by-id").count();
+    assert_eq!(page.contains("No camera."), !page.contains("Camera "), "{page}");
+    assert!(cameras == 0 || page.contains("/dev/v4l/by-id/"), "{page}");
+    for adapter in links("/dev/serial/by-id") {
+        assert!(page.contains(&adapter.display().to_string()), "{page}");
+    }
+    assert_eq!(page.contains("No serial port."), !page.contains("Serial port "), "{page}");
 }
 
 #[test]

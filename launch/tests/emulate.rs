@@ -54,6 +54,27 @@ fn the_launch_file_for_it_differs_from_the_demos_in_its_tracker_alone() {
 }
 
 #[test]
+fn each_sensor_of_a_tracker_has_poses_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = |kind: &str, sensors: &str, fused: &str| {
+        let file = folder.path().join("rig.toml");
+        let fuse = format!(
+            "[nodes.fuse]\nkind = 'fuse'\nconfig.receivers = [{{ tracker = 'bird' }}, {{ tracker = '{fused}' }}]\n"
+        );
+        let text = format!("[nodes.bird]\nkind = '{kind}'\ninstance = 'bird'\nconfig.{sensors}\n{fuse}");
+        std::fs::write(&file, text).unwrap();
+        let plan = Plan::load(&file, &[], KINDS).unwrap();
+        let bird = plan.nodes.iter().find(|node| node.name == "bird").unwrap();
+        (bird.gives.join(" "), plan.warnings.join("\n"))
+    };
+    let (gives, warnings) = given("tracker_flock", "sensors = [2, 3, 5]", "bird_3");
+    assert_eq!((gives.as_str(), warnings.as_str()), ("tracker/bird/pose tracker/bird_3/pose tracker/bird_5/pose", ""));
+    let (gives, warnings) = given("tracker_polhemus", "stations = [1, 2]", "bird_3");
+    assert_eq!(gives, "tracker/bird/pose tracker/bird_2/pose");
+    assert!(warnings.contains("fuse takes tracker/bird_3/pose, which no node of this rig gives"), "{warnings}");
+}
+
+#[test]
 fn a_camera_and_a_tracker_that_stamp_by_different_clocks_are_named() {
     let warned = |file: &str, set: &[String]| Plan::load(&repository(file), set, KINDS).unwrap().warnings.join("\n");
     let forgotten = warned("launch/emulated.toml", &["flock.scan_clock=false".to_owned()]);

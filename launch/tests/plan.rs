@@ -44,6 +44,8 @@ const EYE: Kind = Kind {
     paths: &["scene", "rig"],
     takes: |_| vec!["run/phase".to_owned()],
     gives: |inputs: &Inputs| vec![format!("camera/{}/frame", inputs.instance)],
+    takes_more: |_, _| Vec::new(),
+    gives_more: |_, _| Vec::new(),
     defaults: limn::kind::defaults::<Config>,
     check: |config| limn::kind::check(config, check),
     run: |_| Ok(()),

@@ -82,7 +82,7 @@ fn judged(out: &Path, seconds: f64, poses: &[Pose]) -> Judged {
 }
 
 /// `step_mm` is the step of the device's numbers.
-fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) {
+fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) -> String {
     let folder = tempfile::tempdir().unwrap();
     let [played, known] = ["played", "known"].map(|name| folder.path().join(name));
     let mut rig = Emulated::start(tracker, &played);
@@ -110,11 +110,14 @@ fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) {
     println!("the models are {median:.4} mm apart in the median; sigma {sigma:.4} mm");
     println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are");
     assert!(median < 0.67 * sigma && share > near - 0.05, "{median} mm, {share}; sigma {sigma} mm, {near}\n{said}");
+    said
 }
 
 #[test]
 fn a_flock_on_a_serial_line_gives_the_model_of_the_simulated_tracker() {
-    the_model_is_that_of_the_simulated_tracker(&FLOCK, 0.11);
+    let said = the_model_is_that_of_the_simulated_tracker(&FLOCK, 0.11);
+    let jitter = |line: &str| line.contains("sensor 0: arrivals are freed of") && line.contains("ms rms of jitter");
+    assert!(said.lines().any(jitter), "{said}");
 }
 
 #[test]
