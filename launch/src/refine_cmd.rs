@@ -151,6 +151,9 @@ fn told(evidence: &Evidence, took_s: f64) -> String {
     let clock = &evidence.clock;
     let sigma = clock.sigma_ms.map_or(String::new(), |sigma| format!(", sigma {sigma:.2}"));
     row("the rig's pose offset is too large by", format!("{:+.2} ms{sigma}", clock.tau_ms));
+    if let Some(sigma) = clock.rotation_lag_sigma_ms {
+        row("orientations are older than said by", format!("{:+.2} ms, sigma {sigma:.2}", clock.rotation_lag_ms));
+    }
     let hand_eye = &evidence.hand_eye;
     let held = if hand_eye.freed { "" } else { " (held)" };
     row("hand-eye shift, mm", format!("{:.2?}{held}", hand_eye.shift_mm));

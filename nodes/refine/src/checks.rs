@@ -44,7 +44,7 @@ fn the_derivative_of_a_point_by_its_correction_is_exact_far_from_zero_as_well() 
         unknowns,
         origin: Vector3::zeros(),
     };
-    let (base, twist) = smoothed.base(2_000_000_000, 0.0);
+    let (base, twist) = smoothed.base(2_000_000_000, [0.0; 2]);
     let row = unknowns.row(2.0, base, twist, &problem.origin);
     let correction = Vector6::new(3e-3, -2e-3, 1e-3, 0.1, -0.15, 0.2);
     let normal = Vector3::new(0.3f32, -0.5, 0.8).normalize();
@@ -67,11 +67,28 @@ fn the_derivative_by_the_clock_is_the_twist() {
     let gathered = gathered();
     let smoothed = Smoothed::new(&gathered, &Smoothing::default()).unwrap();
     const STEP_S: f64 = 1e-4;
-    let (before, twist) = smoothed.base(2_000_000_000, -STEP_S);
-    let (after, _) = smoothed.base(2_000_000_000, STEP_S);
+    let (before, twist) = smoothed.base(2_000_000_000, [-STEP_S, 0.0]);
+    let (after, _) = smoothed.base(2_000_000_000, [STEP_S, 0.0]);
     let moved = before.inv_mul(&after);
     assert!((moved.translation.vector / (2.0 * STEP_S) - twist.fixed_rows::<3>(0)).norm() < 1e-4);
     assert!((moved.rotation.scaled_axis() / (2.0 * STEP_S) - twist.fixed_rows::<3>(3)).norm() < 1e-3);
+}
+
+#[test]
+fn a_lag_turns_the_body_alone_and_is_its_own_derivative() {
+    let gathered = gathered();
+    let smoothed = Smoothed::new(&gathered, &Smoothing::default()).unwrap();
+    const STEP_S: f64 = 1e-4;
+    const LAG_S: f64 = 0.03;
+    let at = |tau_s: f64, lag_s: f64| smoothed.base(2_000_000_000, [tau_s, lag_s]);
+    let (before, (middle, twist), after) = (at(0.0, LAG_S - STEP_S).0, at(0.0, LAG_S), at(0.0, LAG_S + STEP_S).0);
+    assert_eq!(middle.translation, at(0.0, 0.0).0.translation);
+    assert!(middle.rotation.angle_to(&at(LAG_S, 0.0).0.rotation) < 1e-12);
+    let turned = (before.rotation.inverse() * after.rotation).scaled_axis();
+    assert!((turned / (2.0 * STEP_S) - twist.fixed_rows::<3>(3)).norm() < 1e-3);
+    let moved =
+        middle.rotation.inverse() * (at(STEP_S, LAG_S).0.translation.vector - at(-STEP_S, LAG_S).0.translation.vector);
+    assert!((moved / (2.0 * STEP_S) - twist.fixed_rows::<3>(0)).norm() < 1e-4);
 }
 
 #[test]

@@ -31,6 +31,9 @@ pub struct Config {
     pub hand_eye_deg: f64,
     /// How well the rig's pose offset is known.
     pub clock_ms: f64,
+    /// How well it is known by how much a reading's orientation is older than its position (beyond what the tracker's node
+    /// says, `rotation_lag_nanos`); 0 takes it as known. Ask for it when the tracker filters orientations by itself.
+    pub rotation_lag_ms: f64,
     /// How smooth a hand's movement is, but for its tremor: a share of the penalty by which the tracker was smoothed.
     pub smoothness: f64,
     /// Where most of what stands on nothing else is one plane, it is a table, and flat when stripes are straight on it: all
@@ -65,6 +68,7 @@ impl Default for Config {
             hand_eye_mm: 1.5,
             hand_eye_deg: 1.5,
             clock_ms: 20.0,
+            rotation_lag_ms: 0.0,
             smoothness: 1.0,
             flat_table: true,
             most_residual: 3.0,
@@ -105,6 +109,7 @@ impl Config {
             ("hand_eye_mm", self.hand_eye_mm, 0.01..=100.0, "0.01 to 100 mm"),
             ("hand_eye_deg", self.hand_eye_deg, 0.01..=30.0, "0.01 to 30 degrees"),
             ("clock_ms", self.clock_ms, 0.01..=100.0, "0.01 to 100 ms"),
+            ("rotation_lag_ms", self.rotation_lag_ms, 0.0..=100.0, "0 to 100 ms"),
             ("smoothness", self.smoothness, 1e-9..=1e3, "1e-9 to 1000"),
             ("most_residual", self.most_residual, 1.5..=100.0, "1.5 to 100 medians"),
             ("live_every_s", self.live_every_s, 0.0..=3600.0, "0 to 3600 s"),

@@ -64,6 +64,10 @@ pub struct ClockEvidence {
     pub tau_ms: f64,
     /// One standard deviation of it; `None` in live revisions.
     pub sigma_ms: Option<f64>,
+    /// Orientations are older than the tracker says, apart from that offset; 0 where it was not asked for.
+    pub rotation_lag_ms: f64,
+    /// One standard deviation of it; `None` where it was not asked for.
+    pub rotation_lag_sigma_ms: Option<f64>,
 }
 
 /// The correction of the hand-eye transform, in the frame of the body. It takes up whatever is constant on the handset, so it

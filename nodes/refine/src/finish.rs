@@ -47,7 +47,13 @@ pub(crate) fn finish(
     let wide_before = look(&still, &poses, &wide(config.seed));
     let strokes = strokes::look(&still, &poses, &wide_before.patches);
     let mut notices = Vec::new();
-    let free = Free { splines: [true; SPLINES], field: true, clock: true, hand_eye: strokes.crossing >= CROSSING };
+    let free = Free {
+        splines: [true; SPLINES],
+        field: true,
+        clock: true,
+        lag: config.rotation_lag_ms > 0.0,
+        hand_eye: strokes.crossing >= CROSSING,
+    };
     if !free.hand_eye {
         notices.push(missing_stroke(&strokes));
     }

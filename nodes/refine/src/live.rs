@@ -60,7 +60,7 @@ pub(crate) fn tick(
     let mut x = live.go_on(&problem.unknowns);
     let prior = solver::prior(config, &noise, &problem);
     let late = frames.last()?.t_s > GLOBALS_S;
-    let free = Free { splines: [true; SPLINES], field: late, clock: late, hand_eye: false };
+    let free = Free { splines: [true; SPLINES], field: late, clock: late, lag: false, hand_eye: false };
     let taken_back = live.steps(config, &problem, &prior, free, &mut x);
     let plan = judging_live(config.seed);
     let zeros = vec![0.0; x.len()];
@@ -74,7 +74,7 @@ pub(crate) fn tick(
     let evidence = Evidence {
         residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
         tracker: tracker(&smoothed, None, noise),
-        clock: clock(&problem, used, f64::NAN),
+        clock: clock(&problem, used, [f64::NAN; 2]),
         hand_eye: hand_eye_held(config),
         observed: None,
         notices,

@@ -126,7 +126,7 @@ fn fixed(problem: &Problem, poses: &[FramePose]) -> Isometry3<f64> {
     let mut next = 0;
     for (placed, pose) in problem.frames.iter().zip(poses) {
         let points = &problem.gathered.frames[placed.frame].points;
-        let (base, _) = problem.smoothed.base(placed.stamp_nanos, 0.0);
+        let (base, _) = problem.smoothed.base(placed.stamp_nanos, [0.0; 2]);
         while next < points.len() {
             let in_body = Point3::from(problem.in_body(&points[next].position_m));
             refined.push(pose.world_from_body * in_body);
@@ -142,12 +142,12 @@ fn trajectory(problem: &Problem, x: &[f64], gauge: &Isometry3<f64>, frames: &[Re
     let (Some(first), Some(last)) = (frames.first(), frames.last()) else { return Vec::new() };
     let from = first.pose.stamp_nanos - MARGIN_NANOS;
     let count = (last.pose.stamp_nanos + MARGIN_NANOS - from) / SAMPLE_NANOS;
-    let tau_s = x[problem.unknowns.clock()];
+    let offsets_s = problem.unknowns.offsets_s(x);
     let sample = |i: i64| {
         let stamp_nanos = from + i * SAMPLE_NANOS;
         problem.smoothed.at(stamp_nanos)?;
         let t_s = (stamp_nanos - problem.start_nanos()) as f64 * 1e-9;
-        let (base, twist) = problem.smoothed.base(stamp_nanos, tau_s);
+        let (base, twist) = problem.smoothed.base(stamp_nanos, offsets_s);
         let row = problem.unknowns.row(t_s, base, twist, &problem.origin);
         let body = row.corrected(&problem.unknowns.correction(&row, x, false));
         let after = frames.partition_point(|frame| frame.pose.stamp_nanos < stamp_nanos).min(frames.len() - 1);

@@ -1,7 +1,7 @@
 //! Preconditioner: each block of unknowns solved by itself, with the diagonal blocks of the data.
 
 use crate::banded::{Banded, Factor};
-use crate::prior::{Prior, is_free};
+use crate::prior::Prior;
 use crate::schur::FrameData;
 use crate::unknowns::{Free, GLOBALS, Row, SPLINES, Unknowns};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -84,7 +84,7 @@ fn globals(
     data: &[FrameData],
     prior: &Prior,
 ) -> Option<Cholesky<f64, Dyn>> {
-    if !(free.field || free.hand_eye || free.clock) {
+    if !(0..GLOBALS).any(|i| free.global(i)) {
         return None;
     }
     // Sums over fixed runs of frames, in order: the same bytes on any number of threads.
@@ -105,7 +105,7 @@ fn globals(
         .collect();
     let mut matrix = parts.iter().fold(DMatrix::zeros(GLOBALS, GLOBALS), |sum, part| sum + part);
     for i in 0..GLOBALS {
-        let precision = if is_free(free, i) { prior.globals()[i] } else { 1.0 };
+        let precision = if free.global(i) { prior.globals()[i] } else { 1.0 };
         matrix[(i, i)] = (matrix[(i, i)] + precision) * (1.0 + DAMPING);
     }
     Cholesky::new(matrix)

@@ -7,7 +7,7 @@
 
 use crate::banded::Banded;
 use crate::spline::Knots;
-use crate::unknowns::{BIAS, Free, GLOBALS, NOISE, SPLINES, TREMOR, Unknowns};
+use crate::unknowns::{BIAS, Free, GLOBALS, MONOMIALS, NOISE, SPLINES, TREMOR, Unknowns};
 
 /// Standard deviations of the unknowns, in metres, radians and seconds; pairs are (position, rotation).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +23,7 @@ pub(crate) struct Beliefs {
     pub field: [f64; 2],
     pub hand_eye: [f64; 2],
     pub clock_s: f64,
+    pub lag_s: f64,
 }
 
 /// Where no reading holds what is left of the noise, it is still no larger than this.
@@ -63,11 +64,14 @@ impl Prior {
             add_differences(&mut band, &[1.0, -2.0, 1.0], BIAS_BEND * weight);
             band
         });
-        let mut globals = [beliefs.clock_s.powi(-2); GLOBALS];
-        for (i, precision) in globals[..GLOBALS - 1].iter_mut().enumerate() {
-            let sigmas = if i < GLOBALS - 7 { beliefs.field } else { beliefs.hand_eye };
-            *precision = sigmas[usize::from(i % 6 >= 3)].powi(-2);
-        }
+        let of_kind = |sigmas: [f64; 2], i: usize| sigmas[usize::from(i % 6 >= 3)];
+        let sigma = |i: usize| match i {
+            i if i < 6 * MONOMIALS => of_kind(beliefs.field, i),
+            i if i < 6 * MONOMIALS + 6 => of_kind(beliefs.hand_eye, i),
+            i if i == 6 * MONOMIALS + 6 => beliefs.clock_s,
+            _ => beliefs.lag_s,
+        };
+        let globals = std::array::from_fn(|i| sigma(i).powi(-2));
         Self { splines: [held(TREMOR, beliefs.tremor), noise, bias], readings: readings(NOISE), globals }
     }
 
@@ -80,7 +84,7 @@ impl Prior {
             }
         }
         let start = unknowns.globals().start;
-        for (i, precision) in self.globals.iter().enumerate().filter(|(i, _)| is_free(free, *i)) {
+        for (i, precision) in self.globals.iter().enumerate().filter(|(i, _)| free.global(*i)) {
             out[start + i] += precision * v[start + i];
         }
     }
@@ -107,18 +111,9 @@ impl Prior {
         &self.readings[kind]
     }
 
-    /// The precisions of field, hand-eye and clock.
+    /// The precisions of field, hand-eye, clock and lag.
     pub fn globals(&self) -> &[f64; GLOBALS] {
         &self.globals
-    }
-}
-
-/// Whether a global unknown may move.
-pub(crate) fn is_free(free: &Free, global: usize) -> bool {
-    match global {
-        i if i < GLOBALS - 7 => free.field,
-        i if i < GLOBALS - 1 => free.hand_eye,
-        _ => free.clock,
     }
 }
 

@@ -47,10 +47,11 @@ impl Problem<'_> {
         self.gathered.frames.first().map_or(0, |frame| frame.header.stamp_nanos)
     }
 
-    /// The rows of all frames at a clock offset: the smoothed tracker read anew.
-    pub fn rows(&self, tau_s: f64) -> Vec<Row> {
+    /// The rows of all frames at the offsets that `x` has: the smoothed tracker read anew.
+    pub fn rows(&self, x: &[f64]) -> Vec<Row> {
+        let offsets_s = self.unknowns.offsets_s(x);
         let row = |frame: &Placed| {
-            let (base, twist) = self.smoothed.base(frame.stamp_nanos, tau_s);
+            let (base, twist) = self.smoothed.base(frame.stamp_nanos, offsets_s);
             self.unknowns.row(frame.t_s, base, twist, &self.origin)
         };
         self.frames.par_iter().map(row).collect()
@@ -58,8 +59,7 @@ impl Problem<'_> {
 
     /// Where all frames are.
     pub fn poses(&self, x: &[f64]) -> Vec<FramePose> {
-        let tau_s = x[self.unknowns.clock()];
-        let rows = self.rows(tau_s);
+        let rows = self.rows(x);
         rows.par_iter().map(|row| self.pose(row, &self.unknowns.correction(row, x, false))).collect()
     }
 

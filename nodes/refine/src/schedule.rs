@@ -85,6 +85,6 @@ pub(crate) fn judging_live(seed: u64) -> StepPlan {
 }
 
 fn looking(stage: &Stage, seed: u64) -> StepPlan {
-    let none = Free { splines: [false; SPLINES], field: false, hand_eye: false, clock: false };
+    let none = Free { splines: [false; SPLINES], field: false, hand_eye: false, clock: false, lag: false };
     stage.plan(none, f64::INFINITY, seed)
 }

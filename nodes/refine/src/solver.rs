@@ -87,6 +87,7 @@ pub(crate) fn prior(config: &Config, noise: &Noise, problem: &Problem) -> Prior 
         field: slow([config.field_position_mm * 1e-3, deg(config.field_rotation_deg)]),
         hand_eye: [config.hand_eye_mm * 1e-3, deg(config.hand_eye_deg)],
         clock_s: config.clock_ms * 1e-3,
+        lag_s: config.rotation_lag_ms * 1e-3,
     };
     Prior::new(&problem.unknowns, &times, &beliefs)
 }
@@ -161,7 +162,7 @@ pub(crate) fn run_stage(
 
 /// How many times the stated variance the readings seem to have after a stage: the larger of position and rotation.
 pub(crate) fn excess(problem: &Problem, prior: &Prior, seen: &Seen, x: &[f64]) -> Option<f64> {
-    let rows = problem.rows(x[problem.unknowns.clock()]);
+    let rows = problem.rows(x);
     let rows: Vec<&Row> = rows.iter().collect();
     let posterior = spline_block(&problem.unknowns, NOISE, &rows, &seen.frames, prior);
     let found = coloured::inflation(&problem.unknowns, prior, posterior, x);

@@ -18,13 +18,18 @@ use rayon::prelude::*;
 const CG_STEPS: usize = 40;
 const TOLERANCE: f64 = 1e-3;
 
-/// The marginal standard deviations of hand-eye (six) and clock: the roots of the diagonal of H^-1, a column each.
-fn sigmas(problem: &Problem, prior: &Prior, seen: &Seen, free: &Free, x: &[f64]) -> [f64; 7] {
+const SHARED: usize = 8;
+
+/// The marginal standard deviations of hand-eye (six), clock and lag: the roots of the diagonal of H^-1, a column each.
+fn sigmas(problem: &Problem, prior: &Prior, seen: &Seen, free: &Free, x: &[f64]) -> [f64; SHARED] {
     let unknowns = &problem.unknowns;
     let poses = problem.poses(x);
     let rows: Vec<&Row> = poses.iter().map(|pose| &pose.row).collect();
     let preconditioner = Preconditioner::new(unknowns, free, &rows, &seen.frames, prior);
     let sigma = |i: usize| {
+        if i + 1 == SHARED && !free.lag {
+            return f64::NAN;
+        }
         let at = unknowns.hand_eye().start + i;
         let mut unit = vec![0.0; x.len()];
         unit[at] = 1.0;
@@ -40,8 +45,8 @@ fn sigmas(problem: &Problem, prior: &Prior, seen: &Seen, free: &Free, x: &[f64])
         let column = pcg::solve(&unit, CG_STEPS, TOLERANCE, apply, |r| preconditioner.apply(unknowns, r));
         column.map_or(f64::NAN, |column| column[at].max(0.0).sqrt())
     };
-    let all: Vec<f64> = (0..7usize).into_par_iter().map(sigma).collect();
-    [0, 1, 2, 3, 4, 5, 6].map(|i| all[i])
+    let all: Vec<f64> = (0..SHARED).into_par_iter().map(sigma).collect();
+    std::array::from_fn(|i| all[i])
 }
 
 /// Clock and hand-eye, with their sigma; where they were held fast that is what was believed.
@@ -54,7 +59,7 @@ pub(crate) fn globals(
 ) -> (ClockEvidence, HandEyeEvidence) {
     let sigma = sigmas(problem, prior, seen, &Free { hand_eye: true, clock: true, ..free }, x);
     let eta = &x[problem.unknowns.hand_eye()];
-    let clock = clock(problem, x, sigma[6]);
+    let clock = clock(problem, x, [sigma[6], sigma[7]]);
     let hand_eye = HandEyeEvidence {
         freed: free.hand_eye,
         shift_mm: [0, 1, 2].map(|i| eta[i] * 1e3),
@@ -65,10 +70,11 @@ pub(crate) fn globals(
     (clock, hand_eye)
 }
 
-/// The clock's offset as it was found.
-pub(crate) fn clock(problem: &Problem, x: &[f64], sigma_s: f64) -> ClockEvidence {
-    let sigma_ms = Some(sigma_s * 1e3).filter(|sigma| sigma.is_finite());
-    ClockEvidence { tau_ms: x[problem.unknowns.clock()] * 1e3, sigma_ms }
+/// The clock's offset and the lag of the orientations as they were found.
+pub(crate) fn clock(problem: &Problem, x: &[f64], sigmas_s: [f64; 2]) -> ClockEvidence {
+    let [sigma_ms, rotation_lag_sigma_ms] = sigmas_s.map(|sigma| Some(sigma * 1e3).filter(|sigma| sigma.is_finite()));
+    let [tau_ms, rotation_lag_ms] = problem.unknowns.offsets_s(x).map(|offset| offset * 1e3);
+    ClockEvidence { tau_ms, sigma_ms, rotation_lag_ms, rotation_lag_sigma_ms }
 }
 
 /// The hand-eye transform where nothing was asked about it.

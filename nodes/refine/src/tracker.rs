@@ -27,9 +27,23 @@ impl Smoothed {
         self.way.at(stamp_nanos)
     }
 
+    /// world_from_body with its position read at a moment plus tau, its rotation later by the lag, and how both move by a
+    /// second, along the axes of this body.
+    pub fn base(&self, stamp_nanos: i64, [tau_s, lag_s]: [f64; 2]) -> (Isometry3<f64>, Vector6<f64>) {
+        let (placed, twist) = self.read(stamp_nanos, tau_s);
+        if lag_s == 0.0 {
+            return (placed, twist);
+        }
+        let (turned, turning) = self.read(stamp_nanos, tau_s + lag_s);
+        let velocity = turned.rotation.inverse() * (placed.rotation * twist.fixed_rows::<3>(0).into_owned());
+        let mut moving = turning;
+        moving.fixed_rows_mut::<3>(0).copy_from(&velocity);
+        (Isometry3::from_parts(placed.translation, turned.rotation), moving)
+    }
+
     /// world_from_body at a moment plus tau, and its twist in the moving frame. Where there is no reading at the later
     /// moment the pose goes on as at the earlier.
-    pub fn base(&self, stamp_nanos: i64, tau_s: f64) -> (Isometry3<f64>, Vector6<f64>) {
+    fn read(&self, stamp_nanos: i64, tau_s: f64) -> (Isometry3<f64>, Vector6<f64>) {
         let later = stamp_nanos.saturating_add((tau_s * 1e9).round() as i64);
         match (self.way.at(later), self.way.velocity(later)) {
             (Some(pose), Some(twist)) => (pose, twist),

@@ -7,7 +7,7 @@
 //!
 //! with splines for the hand's tremor that smoothing took off the way, for what smoothing left of the white noise, and for slow
 //! errors; a the coefficients of a field of degree 2 in space, and eta the hand-eye correction; the clock offset tau moves
-//! the base pose itself.
+//! the base pose itself, and the lag of its orientations, where it is asked for, its rotation alone.
 
 use crate::spline::Knots;
 use nalgebra::{Isometry3, Matrix3, Vector3, Vector6};
@@ -16,8 +16,8 @@ use std::ops::Range;
 /// Monomials of degree 2 and less.
 pub(crate) const MONOMIALS: usize = 10;
 const FIELD: usize = 6 * MONOMIALS;
-/// Unknowns that all frames share: field, hand-eye and clock.
-pub(crate) const GLOBALS: usize = FIELD + 6 + 1;
+/// Unknowns that all frames share: field, hand-eye, clock and the lag of the orientations.
+pub(crate) const GLOBALS: usize = FIELD + 6 + 2;
 /// The field's coordinates are in units of this.
 const FIELD_LENGTH_M: f64 = 0.3;
 
@@ -40,6 +40,20 @@ pub(crate) struct Free {
     pub field: bool,
     pub hand_eye: bool,
     pub clock: bool,
+    /// The lag of the orientations, apart from the clock.
+    pub lag: bool,
+}
+
+impl Free {
+    /// Whether one of the globals may move, by its place among them.
+    pub fn global(&self, which: usize) -> bool {
+        match which {
+            i if i < FIELD => self.field,
+            i if i < FIELD + 6 => self.hand_eye,
+            i if i == FIELD + 6 => self.clock,
+            _ => self.lag,
+        }
+    }
 }
 
 /// One frame's row of the linear map from the unknowns to its correction.
@@ -51,7 +65,7 @@ pub(crate) struct Row {
     /// world_from_body of the smoothed tracker at t_k + tau.
     pub base: Isometry3<f64>,
     pub world_from_base: Matrix3<f64>,
-    /// How the base moves by a second of tau, as a correction.
+    /// How the base moves by a second of tau, as a correction; by a second of lag it turns alone.
     twist: Vector6<f64>,
 }
 
@@ -85,6 +99,15 @@ impl Unknowns {
         self.hand_eye().end
     }
 
+    pub fn lag(&self) -> usize {
+        self.clock() + 1
+    }
+
+    /// Clock offset and lag, as the base is read with them.
+    pub fn offsets_s(&self, x: &[f64]) -> [f64; 2] {
+        [x[self.clock()], x[self.lag()]]
+    }
+
     /// The row of a frame at a moment (of the splines' time); `middle` is where the field's polynomial is centred.
     pub fn row(&self, t_s: f64, base: Isometry3<f64>, twist: Vector6<f64>, middle: &Vector3<f64>) -> Row {
         let p = (base.translation.vector - middle) / FIELD_LENGTH_M;
@@ -94,8 +117,8 @@ impl Unknowns {
         Row { knots, monomials, base, world_from_base, twist }
     }
 
-    /// The correction of one frame; `with_clock` adds what a change of tau does to it (for steps, not for poses: there
-    /// the base was read at t + tau already).
+    /// The correction of one frame; `with_clock` adds what a change of tau and lag does to it (for steps, not for poses:
+    /// there the base was read with them already).
     pub fn correction(&self, row: &Row, x: &[f64], with_clock: bool) -> Vector6<f64> {
         let mut sum = Vector6::zeros();
         for (which, (knot, weights)) in row.knots.iter().enumerate() {
@@ -121,6 +144,7 @@ impl Unknowns {
         }
         if with_clock {
             sum += row.twist * x[self.clock()];
+            (3..6).for_each(|i| sum[i] += row.twist[i] * x[self.lag()]);
         }
         sum
     }
@@ -153,6 +177,9 @@ impl Unknowns {
         }
         if free.clock {
             out[FIELD + 6] += row.twist.dot(force);
+        }
+        if free.lag {
+            out[FIELD + 7] += row.twist.fixed_rows::<3>(3).dot(&force.fixed_rows::<3>(3));
         }
     }
 

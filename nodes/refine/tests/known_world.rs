@@ -73,6 +73,24 @@ fn a_bent_field_with_a_wrong_clock_and_a_wrong_hand_eye_is_undone_and_the_clock_
 }
 
 #[test]
+fn orientations_that_are_older_than_said_are_found_when_they_are_asked_for() {
+    let mut sweep = Sweep::new(&Spec { seconds: 40.0, ..named("C") });
+    let turned: Vec<[f64; 4]> = sweep.poses.iter().map(|pose| pose.world_from_body.rotation_wxyz).collect();
+    sweep.poses.drain(..2);
+    sweep.poses.iter_mut().zip(turned).for_each(|(pose, rotation)| pose.world_from_body.rotation_wxyz = rotation);
+    let refined = |rotation_lag_ms: f64| {
+        let refinement = sweep.refiner(Config { rotation_lag_ms, ..Config::default() }).finish().unwrap();
+        let fit = measure::fit(&sweep, &refinement.scans().collect::<Vec<_>>());
+        (refinement.evidence.clock, fit.rms)
+    };
+    let ((held, without), (clock, with)) = (refined(0.0), refined(30.0));
+    println!("{without:.3} {held:?}\n{with:.3} {clock:?}");
+    assert_eq!((held.rotation_lag_ms, held.rotation_lag_sigma_ms), (0.0, None));
+    assert!((clock.rotation_lag_ms - 20.0).abs() < 1.5 && clock.tau_ms.abs() < 1.5, "{clock:?}");
+    assert!(with < without, "{with} {without}");
+}
+
+#[test]
 fn a_strong_field_is_undone() {
     let result = refined(&Sweep::new(&named("C")));
     assert!(result.fit.rms < 0.13, "{}", result.fit);
