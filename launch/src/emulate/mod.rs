@@ -105,22 +105,29 @@ fn play(about: &str, device: impl Emulated, common: &Common, clock: HostClock, b
     Ok(())
 }
 
-/// True once the program was told to stop.
+/// True once the program was told to stop. It listens for that when this returns.
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
     let stopping = Arc::<AtomicBool>::default();
     let told = stopping.clone();
+    let (listens, listening) = std::sync::mpsc::channel();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     std::thread::Builder::new()
         .name("interrupts".to_owned())
         .spawn(move || {
             runtime.block_on(async {
                 match Interrupts::open() {
-                    Ok(mut interrupts) => interrupts.next().await,
+                    Ok(mut interrupts) => {
+                        // Who waits for this has not gone.
+                        let _ = listens.send(());
+                        interrupts.next().await;
+                    }
                     Err(error) => tracing::error!("{error:#}"),
                 }
             });
             told.store(true, Ordering::SeqCst);
         })
         .context("a thread")?;
+    // An error is no message: the thread has told it.
+    let _ = listening.recv();
     Ok(stopping)
 }
