@@ -1,22 +1,24 @@
 //! The launcher's own place on the bus: it publishes phase and calibration, takes orders, and watches who is ready and
 //! who has finished. A thread of its own, because receiving blocks.
 
+use crate::accounts::Accounts;
 use crate::board::{Board, Event};
 use crate::operator::{Operator, Order};
 use anyhow::{Context as _, Result};
 use bus::{Bus, BusConfig, Presence, Publisher, Subscriber};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
-use wire::{Calibration, Progress, RunPhase, topic};
+use wire::{Calibration, Health, Progress, RunPhase, topic};
 
 /// Handle of the thread.
 pub(crate) struct Desk {
     orders: mpsc::SyncSender<Order>,
     ring: Box<dyn Fn() + Send + Sync>,
     closing: Arc<AtomicBool>,
+    lost: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -31,6 +33,8 @@ pub(crate) struct Calibrated {
 const NAP: Duration = Duration::from_millis(200);
 /// Progress comes once a message from each node.
 const PROGRESS_DEPTH: usize = 65_536;
+/// An account comes once a second from each.
+const HEALTH_DEPTH: usize = 1024;
 
 impl Desk {
     /// Opens the desk of a rig. `names` gives the name in the launch file for each kind/instance; the keeper of a rig
@@ -44,12 +48,15 @@ impl Desk {
     ) -> Result<Self> {
         let bus = Bus::open(config)?;
         let (orders, inbox) = mpsc::sync_channel(64);
-        let closing = Arc::new(AtomicBool::new(false));
+        let (closing, lost) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
         let mut work = Work {
             phases: keeper.then(|| bus.publisher(&topic::run_phase())).transpose()?,
             followed: (!keeper).then(|| bus.subscribe(&topic::run_phase(), 16)).transpose()?,
             orders: bus.subscribe(&topic::order(), 64)?,
             progress: bus.subscribe(&topic::progress("**"), PROGRESS_DEPTH)?,
+            healths: bus.subscribe(&topic::health("**"), HEALTH_DEPTH)?,
+            accounts: Accounts::default(),
+            lost: lost.clone(),
             presence: bus.presence()?,
             operator: Operator::default(),
             ready: BTreeSet::new(),
@@ -70,7 +77,7 @@ impl Desk {
         work.publish(first);
         let thread =
             std::thread::Builder::new().name("desk".to_owned()).spawn(move || work.run()).context("a thread")?;
-        Ok(Self { orders, ring: Box::new(bus.ringer()), closing, thread: Some(thread) })
+        Ok(Self { orders, ring: Box::new(bus.ringer()), closing, lost, thread: Some(thread) })
     }
 
     /// Passes an order of the operator on.
@@ -78,6 +85,11 @@ impl Desk {
         // A full inbox means a key that is held down.
         let _ = self.orders.try_send(order);
         (self.ring)();
+    }
+
+    /// Messages lost on all inputs of all nodes, as far as they have told; it counts on until the desk is closed.
+    pub(crate) fn lost(&self) -> Arc<AtomicU64> {
+        self.lost.clone()
     }
 }
 
@@ -99,6 +111,9 @@ struct Work {
     calibration: Option<Publisher<Calibration>>,
     orders: Subscriber<RunPhase>,
     progress: Subscriber<Progress>,
+    healths: Subscriber<Health>,
+    accounts: Accounts,
+    lost: Arc<AtomicU64>,
     presence: Presence,
     operator: Operator,
     ready: BTreeSet<String>,
@@ -124,7 +139,9 @@ impl Work {
             }
             self.note_presence();
             self.note_progress();
+            self.note_accounts();
         }
+        self.note_accounts();
         drop(self.calibration);
         if let Err(error) = self.bus.close() {
             tracing::debug!("{error}");
@@ -159,6 +176,13 @@ impl Work {
             self.board.tell(Event::Gone { node });
         }
         self.ready = ready;
+    }
+
+    fn note_accounts(&mut self) {
+        while let Some(health) = self.healths.next() {
+            self.accounts.note(health);
+        }
+        self.lost.store(self.accounts.lost(), Ordering::Relaxed);
     }
 
     fn note_progress(&mut self) {

@@ -13,6 +13,7 @@ use anyhow::{Context as _, Result, bail};
 use bus::{BusConfig, Router};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::{Notify, broadcast, watch};
 use tokio::task::{JoinSet, spawn_blocking};
 use wire::Phase;
@@ -36,6 +37,7 @@ pub struct Launcher {
     hurry: Arc<Notify>,
     supervisors: JoinSet<()>,
     desk: Option<Desk>,
+    lost: Arc<AtomicU64>,
     router: Option<Router>,
 }
 
@@ -54,7 +56,7 @@ impl Launcher {
         let names = plan.nodes.iter().map(|node| (node.address(), node.name.clone())).collect();
         let (desk_bus, desk_board) = (bus.clone(), board.clone());
         let desk = spawn_blocking(move || Desk::open(&desk_bus, keeper, calibrated, names, desk_board)).await??;
-        let rung = watch::Sender::new(Rung::Run);
+        let (rung, lost) = (watch::Sender::new(Rung::Run), desk.lost());
         let mut supervisors = JoinSet::new();
         for node in plan.nodes.iter().filter(mine) {
             let supervisor = Supervisor {
@@ -66,7 +68,7 @@ impl Launcher {
             };
             supervisors.spawn(supervisor.run());
         }
-        Ok(Self { plan, bus, board, rung, hurry: Arc::default(), supervisors, desk: Some(desk), router })
+        Ok(Self { plan, bus, board, rung, hurry: Arc::default(), supervisors, desk: Some(desk), lost, router })
     }
 
     /// What runs.
@@ -153,6 +155,11 @@ impl Launcher {
                 bail!("failed: {}", several.iter().map(|(n, r)| format!("{n} ({r})")).collect::<Vec<_>>().join("; "))
             }
         }
+    }
+
+    /// Messages lost on all inputs of all nodes, as far as they have told; whole once [`Launcher::stop`] has returned.
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
     }
 
     /// Notified, it skips the rest of the time that the nodes have on the present rung of [`Launcher::stop`].

@@ -19,6 +19,7 @@
 //! Who wants to run a rig from code (the demo does) takes [`launcher::Launcher`] and its events; who wants another node
 //! in the program adds a line to [`nodes::KINDS`].
 
+pub mod accounts;
 pub mod backoff;
 pub mod board;
 pub mod cli;

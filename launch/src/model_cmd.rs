@@ -4,12 +4,15 @@ use crate::demo::{UNSEEN, table};
 use crate::nodes;
 use crate::plan::Plan;
 use crate::recorded::Recorded;
-use crate::run::{self, Course, Harvest};
+use crate::run::{self, Course, Harvest, Passed, before, evidence};
 use anyhow::{Context as _, Result, bail};
 use clap::Args as ClapArgs;
+use formats::mesh::LoadedMesh;
+use geometry::TriangleMesh;
 use report::{Exhibits, Machine, Report, Run};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use wire::Mesh;
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
@@ -44,8 +47,8 @@ pub fn run(args: &Args) -> Result<()> {
     let launch = crate::demo::files::write(&out, &FILES)?;
     let plan = Plan::load(&launch, &sets(args, &recorded, &launch, &out)?, nodes::KINDS)?;
     std::fs::write(out.join("config.toml"), plan.to_toml()).context("writing the effective configuration")?;
-    let (harvest, outcome) = run::run(plan, &Course { out: &out, sweep_s: None, linger: false })?;
-    let report = tell(args, &harvest, outcome.as_ref().err(), started, &out)?;
+    let Passed { harvest, outcome, .. } = run::run(plan.clone(), &Course { out: &out, sweep_s: None, linger: false })?;
+    let report = tell(args, &plan, &harvest, outcome.as_ref().err(), started, &out)?;
     table::print(&report, &out)?;
     outcome?;
     if !report.is_good() {
@@ -65,6 +68,7 @@ fn sets(args: &Args, recorded: &Recorded, launch: &Path, out: &Path) -> Result<V
 
 fn tell(
     args: &Args,
+    plan: &Plan,
     harvest: &Harvest,
     failure: Option<&anyhow::Error>,
     started: Instant,
@@ -77,6 +81,7 @@ fn tell(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         ..Run::default()
     };
+    let shown = Shown::new(plan, harvest);
     let report = Report {
         title: format!("Limn: {}", args.input.display()),
         run,
@@ -84,11 +89,48 @@ fn tell(
         counts: harvest.counts(),
         stages: harvest.stages(),
         times: harvest.times(started),
+        refinement: harvest.refinement.as_ref().map(evidence::refined),
         failures: failure.map(|error| format!("{error:#}")).into_iter().collect(),
         ..Report::default()
     };
     report.write_json(&out.join("report.json"))?;
-    let model = harvest.model.as_ref().map(report::painted).filter(|model| model.mesh.check().is_ok());
-    report.write_html(&out.join("report.html"), &Exhibits { model: model.as_ref(), ..Exhibits::default() })?;
+    report.write_html(&out.join("report.html"), &shown.exhibits())?;
     Ok(report)
+}
+
+/// What the page shows of a scan whose truth nobody knows. What is no surface is not shown.
+struct Shown {
+    model: Option<LoadedMesh>,
+    /// The surface before refinement, where there was one.
+    before: Option<LoadedMesh>,
+    surface: TriangleMesh,
+    sigma_m: Vec<f32>,
+    residuals_m: Vec<f32>,
+}
+
+impl Shown {
+    fn new(plan: &Plan, harvest: &Harvest) -> Self {
+        let plain = |mesh: &Mesh| LoadedMesh { mesh: TriangleMesh::from(mesh), texture: None };
+        let is_surface = |loaded: &LoadedMesh| loaded.mesh.check().is_ok();
+        let refined = harvest.refinement.as_ref();
+        let before = refined.and_then(|_| before::surface(plan, &harvest.placed).ok());
+        Self {
+            model: harvest.model.as_ref().map(report::painted).filter(is_surface),
+            before: before.as_ref().map(plain).filter(is_surface),
+            surface: harvest.mesh.as_ref().map(TriangleMesh::from).unwrap_or_default(),
+            sigma_m: harvest.mesh.as_ref().map(|mesh| mesh.sigma_m.to_vec()).unwrap_or_default(),
+            residuals_m: harvest.residuals_m(),
+        }
+    }
+
+    fn exhibits(&self) -> Exhibits<'_> {
+        let map = |values: &'_ [f32]| !values.is_empty() && self.surface.check().is_ok();
+        Exhibits {
+            model: self.model.as_ref(),
+            before: self.before.as_ref(),
+            stated: map(&self.sigma_m).then_some((&self.surface, &self.sigma_m)),
+            residual: map(&self.residuals_m).then_some((&self.surface, &self.residuals_m)),
+            truth: None,
+        }
+    }
 }

@@ -1,7 +1,11 @@
 //! `limn replay FILE`: a recording or a scan folder through a pipeline.
 
 use crate::cli::LaunchFile;
+use crate::demo::files;
+use crate::model_cmd::FILES;
+use crate::plan::Plan;
 use crate::recorded::Recorded;
+use crate::running;
 use crate::up;
 use anyhow::Result;
 use std::path::PathBuf;
@@ -17,9 +21,9 @@ pub const HELP: &str = "Examples:
 pub struct Args {
     /// A recording (MCAP) or a scan folder.
     pub file: PathBuf,
-    /// The launch file that takes it; it has a node named `replay`.
-    #[arg(long, default_value = "launch/replay.toml", value_name = "FILE")]
-    pub launch: PathBuf,
+    /// The launch file that takes it, with a node named `replay`; without it, the one that is built in.
+    #[arg(long, value_name = "FILE")]
+    pub launch: Option<PathBuf>,
     /// Overrule one value. May come again.
     #[arg(long = "set", value_name = "NODE.KEY=VALUE")]
     pub sets: Vec<String>,
@@ -27,8 +31,22 @@ pub struct Args {
 
 /// Starts the launch file with this recording in it.
 pub fn run(args: &Args) -> Result<()> {
-    let mut sets = Recorded::look(&args.file)?.sets(&args.file, &args.launch)?;
+    // What is built in is read from files as any other, so that its includes and the origins of its values are the same.
+    let own = running::folder()?.join(format!("replay-{}", std::process::id()));
+    let launch = match &args.launch {
+        Some(launch) => launch.clone(),
+        None => files::write(&own, &FILES)?,
+    };
+    let plan = plan(args, launch);
+    if args.launch.is_none() {
+        // It is read; that it stays would harm nobody.
+        let _ = std::fs::remove_dir_all(&own);
+    }
+    up::play(plan?, None)
+}
+
+fn plan(args: &Args, launch: PathBuf) -> Result<Plan> {
+    let mut sets = Recorded::look(&args.file)?.sets(&args.file, &launch)?;
     sets.extend(args.sets.iter().cloned());
-    let launch = LaunchFile { file: args.launch.clone(), sets };
-    up::run(&up::Args { launch, machine: None })
+    LaunchFile { file: launch, sets }.load()
 }

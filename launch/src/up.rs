@@ -10,7 +10,7 @@ use crate::plan::Plan;
 use crate::running;
 use crate::stop::Rung;
 use crate::story::story;
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{broadcast, mpsc};
 use wire::LogLevel;
@@ -36,9 +36,13 @@ pub struct Args {
 
 /// Runs the rig until the operator stops it, its scan is done (`[run] once`), or a required node has failed for good.
 pub fn run(args: &Args) -> Result<()> {
-    let plan = args.launch.load()?;
+    play(args.launch.load()?, args.machine.clone())
+}
+
+/// The same for a plan that is read already.
+pub(crate) fn play(plan: Plan, machine: Option<String>) -> Result<()> {
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
-    let outcome = runtime.block_on(up(plan, args.machine.clone()));
+    let outcome = runtime.block_on(up(plan, machine));
     // A thread may be reading the keyboard still.
     runtime.shutdown_background();
     outcome
@@ -70,7 +74,11 @@ pub async fn up(plan: Plan, machine: Option<String>) -> Result<()> {
         say(LogLevel::Warn, format!("a node did not stop when its standard input closed: {rung:?} was needed"));
     }
     drop((restore, announced));
-    outcome.and(launcher.check())
+    outcome.and(launcher.check())?;
+    match launcher.lost() {
+        0 => Ok(()),
+        lost => bail!("{lost} messages lost"),
+    }
 }
 
 /// Passes orders on and tells what happens, until it is time to stop.

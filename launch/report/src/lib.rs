@@ -4,9 +4,10 @@
 //! ([`Report::write_json`]) and report.html ([`Report::write_html`]), one file that needs no network: pictures from four
 //! sides, the error as colours on the model, its histogram, tables of times, losses and refusals.
 //!
-//! The numbers come from [`geometry::compare`] (shape), [`colour_error`] (colours), [`border_error`] (their borders) and [`seen_mask`] (what of the truth
-//! the camera could see at all). Lengths are metres, world frame, z up; millimetres on the page. The same input gives the
-//! same bytes.
+//! The numbers come from [`geometry::compare`] (shape), [`colour_error`] (colours), [`border_error`] (their borders) and
+//! [`seen_mask`] (what of the truth the camera could see at all). Lengths are metres, world frame, z up; millimetres on the
+//! page. A scan whose truth nobody knows is told by what it says of itself: residuals, sigmas, what it determines. The same
+//! input gives the same bytes.
 //!
 //! ```
 //! use report::{Exhibits, Report};
@@ -37,6 +38,6 @@ pub use colour::{ColourError, ColourErrorReason, colour_error};
 pub use render::render;
 pub use seen::{Gate, seen_mask};
 pub use stated::{StatedError, stated_error};
-pub use summary::{Aligned, Counts, Machine, Refined, Refused, Report, Run, Stage, Time};
+pub use summary::{Aligned, Counts, FrameError, Machine, Observed, Refined, Refused, Report, Run, Stage, Time};
 pub use view::{View, four_views};
 pub use write::{Exhibits, PageError};

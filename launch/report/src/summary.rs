@@ -61,14 +61,47 @@ pub struct Refined {
     pub offset_error_ms: [f64; 2],
     /// Correction of the hand-eye shift: its length.
     pub hand_eye_shift_mm: f64,
+    /// How well that is known.
+    pub hand_eye_shift_sigma_mm: f64,
     /// Correction of the hand-eye rotation: its angle.
     pub hand_eye_turn_deg: f64,
+    /// How well that is known.
+    pub hand_eye_turn_sigma_deg: f64,
+    /// What the scan determines.
+    pub observed: Option<Observed>,
     /// Median over the frames of what a pose's error moves their points along the ray.
     pub frame_sigma_mm: f64,
     /// Frames left out.
     pub frames_dropped: u64,
+    /// All frames in the order of their stamps: for the plot, too many for the JSON.
+    #[serde(skip)]
+    pub frames: Vec<FrameError>,
     /// What the operator should know.
     pub notices: Vec<String>,
+}
+
+/// What a scan determines, whatever its tracker.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Observed {
+    /// The share of the surface on which stripes cross by 30 degrees or more, 0..1.
+    pub crossing: f64,
+    /// The direction of most stripes, in the world.
+    pub stripes_along: [f64; 3],
+    /// Of the six motions of a rigid piece against the surface, so many are held; 3 on a plane.
+    pub held_directions: u32,
+}
+
+/// How well one laser-lit picture is known to stand where it does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameError {
+    /// Since the first of them.
+    pub at_s: f64,
+    /// How far its pose's error moves its points: one standard deviation.
+    pub sigma_mm: f64,
+    /// Four in five of its points are closer to the common surface; `None` when it met none.
+    pub residual_mm: Option<f64>,
+    /// True for one that is not part of the model.
+    pub left_out: bool,
 }
 
 /// How a run was made: enough to make it again.

@@ -13,6 +13,8 @@ pub struct Exhibits<'a> {
     pub model: Option<&'a LoadedMesh>,
     /// The surface with the standard deviation that each vertex states, in metres.
     pub stated: Option<(&'a TriangleMesh, &'a [f32])>,
+    /// The surface with how far the points about each vertex lie off it (rms), in metres; NaN where there are none.
+    pub residual: Option<(&'a TriangleMesh, &'a [f32])>,
     /// What would have come out without refinement.
     pub before: Option<&'a LoadedMesh>,
     /// What was scanned, in the same frame.

@@ -3,10 +3,10 @@
 use super::standing::{lay_onto, move_by};
 use super::{Args, Pace};
 use crate::plan::Plan;
-use crate::run::{Harvest, before};
+use crate::run::{Harvest, before, evidence};
 use anyhow::{Context as _, Result};
 use formats::mesh::LoadedMesh;
-use geometry::{Camera, Comparison, METRES_PER_MM, MeshIndex, TimedPose, TriangleMesh};
+use geometry::{Camera, Comparison, MeshIndex, TimedPose, TriangleMesh};
 use nalgebra::{Isometry3, Point3};
 use report::{Aligned, Exhibits, Gate, Machine, Refined, Report, Run, Time};
 use std::path::Path;
@@ -53,10 +53,12 @@ pub fn judge(
         report.stated = report::stated_error(laid, sigma_m, &bench.truth.mesh)?;
     }
     let (before, without) = before.unzip();
-    report.refinement = harvest.refinement.as_ref().map(|refinement| Refined { without, ..refined(refinement) });
+    report.refinement =
+        harvest.refinement.as_ref().map(|refinement| Refined { without, ..evidence::refined(refinement) });
     if let Some(before) = &before {
         formats::mesh::write_ply(&out.join("before.ply"), &before.mesh)?;
     }
+    let residuals_m = harvest.residuals_m();
     let model = harvest.model.as_ref().map(|model| bench.colour(model, &onto, &mut report));
     report.times = harvest.times(started);
     let comparison = Time { what: "comparison".to_owned(), seconds: compared.elapsed().as_secs_f64() };
@@ -66,6 +68,7 @@ pub fn judge(
         model: model.as_ref().filter(|model| model.mesh.check().is_ok()),
         before: before.as_ref().filter(|before| before.mesh.check().is_ok()),
         stated: laid.as_ref().filter(|_| report.stated.is_some()).map(|mesh| (mesh, sigma_m)),
+        residual: laid.as_ref().filter(|_| !residuals_m.is_empty()).map(|mesh| (mesh, &*residuals_m)),
         truth: Some(&bench.truth),
     };
     report.write_html(&out.join("report.html"), &exhibits)?;
@@ -132,26 +135,6 @@ impl Bench {
         let mut shown = report::painted(model);
         move_by(&mut shown.mesh, onto);
         shown
-    }
-}
-
-fn refined(refinement: &wire::Refinement) -> Refined {
-    let mm = |metres: f64| metres / METRES_PER_MM;
-    let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let mut sigmas: Vec<f32> = refinement.frames.iter().map(|frame| frame.sigma_m).collect();
-    sigmas.sort_by(f32::total_cmp);
-    let sigma_m = sigmas.get(sigmas.len() / 2).copied().unwrap_or_default();
-    let ms = |nanos: i64| nanos as f64 * 1e-6;
-    Refined {
-        without: None,
-        residual_before_mm: mm(refinement.residual_before_m),
-        residual_after_mm: mm(refinement.residual_after_m),
-        offset_error_ms: [ms(refinement.pose_offset_error_nanos), ms(refinement.pose_offset_sigma_nanos)],
-        hand_eye_shift_mm: mm(length(refinement.hand_eye_shift_m)),
-        hand_eye_turn_deg: length(refinement.hand_eye_turn_rad).to_degrees(),
-        frame_sigma_mm: mm(f64::from(sigma_m)),
-        frames_dropped: refinement.frames_dropped,
-        notices: refinement.notices.clone(),
     }
 }
 

@@ -7,7 +7,7 @@ pub(crate) mod table;
 
 use crate::nodes;
 use crate::plan::Plan;
-use crate::run::{self, Course};
+use crate::run::{self, Course, Passed};
 use anyhow::{Context as _, Result, bail};
 use clap::{Args as ClapArgs, ValueEnum};
 use std::path::PathBuf;
@@ -97,9 +97,13 @@ pub fn run(args: &Args) -> Result<()> {
     std::fs::write(out.join("config.toml"), plan.to_toml()).context("writing the effective configuration")?;
     let linger = !args.headless && std::io::IsTerminal::is_terminal(&std::io::stdin());
     let course = Course { out: &out, sweep_s: Some(known.hand.duration_s()), linger };
-    let (harvest, outcome) = run::run(plan.clone(), &course)?;
+    let Passed { harvest, outcome, standing } = run::run(plan.clone(), &course)?;
     let report = judge::judge(args, &known, &plan, &harvest, outcome.as_ref().err(), started, &out)?;
     table::print(&report, &out)?;
+    if let Some(standing) = standing {
+        eprintln!("\ndone; the page stays up until Ctrl-C");
+        standing.stay()?;
+    }
     outcome?;
     if !report.is_good() {
         bail!("{} messages lost; {} failures", report.lost(), report.failures.len());

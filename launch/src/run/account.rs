@@ -1,6 +1,6 @@
 //! What one scan brought, as numbers for its report.
 
-use super::Harvest;
+use super::{Harvest, parts};
 use geometry::TriangleMesh;
 use report::{Counts, Refused, Stage, Time};
 use std::time::Instant;
@@ -10,7 +10,7 @@ impl Harvest {
     /// How much of everything there was.
     pub fn counts(&self) -> Counts {
         let received = |kind: &str, stream: &str| {
-            let nodes = self.accounts().filter(|health| health.node.starts_with(kind));
+            let nodes = self.accounts.all().filter(|health| health.node.starts_with(kind));
             let inputs = nodes.flat_map(|health| health.inputs).filter(|input| input.key.ends_with(stream));
             inputs.map(|input| input.received).sum()
         };
@@ -19,7 +19,7 @@ impl Harvest {
             frames: received("stripe/", "/frame"),
             poses: received("register/", "/pose"),
             points: self.points,
-            cloud_points: self.balls,
+            cloud_points: self.cloud.len() as u64,
             triangles: mesh.as_ref().map_or(0, |mesh| mesh.triangles.len() as u64),
             texture_cells: self.model.as_ref().map_or(0, |m| m.texture.iter().filter(|t| t[3] == 255).count() as u64),
             area_mm2: mesh.as_ref().map_or(0.0, |mesh| mesh.area() * 1e6),
@@ -32,7 +32,7 @@ impl Harvest {
             return None;
         }
         let pictures = self.counts().frames;
-        let triangulated = self.accounts().filter(|health| health.node.starts_with("triangulate/"));
+        let triangulated = self.accounts.all().filter(|health| health.node.starts_with("triangulate/"));
         let refused = triangulated.flat_map(|health| health.refused);
         let reasons: Vec<String> = refused.map(|refusal| format!("{} x {}", refusal.count, refusal.reason)).collect();
         Some(match reasons.as_slice() {
@@ -45,7 +45,7 @@ impl Harvest {
 
     /// What each node did.
     pub fn stages(&self) -> Vec<Stage> {
-        self.accounts().map(|health| self.stage(&health)).collect()
+        self.accounts.all().map(|health| self.stage(&health)).collect()
     }
 
     fn stage(&self, health: &Health) -> Stage {
@@ -69,20 +69,20 @@ impl Harvest {
 
     /// The parts of the run, from one node's end to the next one's, and all of it until now.
     pub fn times(&self, started: Instant) -> Vec<Time> {
-        let of = |kind: &str| self.finished.iter().find(|(node, _)| node.starts_with(kind)).map(|(_, at)| *at);
-        let sweep = of("cluster/");
-        let parts = [
-            ("start", Some(started), self.began),
-            ("sweep", self.began, sweep),
-            ("surface", sweep, of("surface/")),
-            ("colour", of("surface/"), of("paint/")),
-            ("files", of("paint/"), of("export/")),
-            ("all", Some(started), Some(Instant::now())),
-        ];
-        let time = |(what, from, to): &(&str, _, _)| {
-            Some(Time { what: (*what).to_owned(), seconds: self.seconds(*from, *to)? })
+        let time = |what: &str, from: Option<Instant>, to: Option<Instant>| {
+            Some(Time { what: what.to_owned(), seconds: self.seconds(from, to)? })
         };
-        parts.iter().filter_map(time).collect()
+        let mut times: Vec<Time> = time("start", Some(started), self.began).into_iter().collect();
+        let mut before = self.began;
+        for part in parts::all() {
+            let end = self.finished.iter().find(|(node, _)| part.ends_with(node)).map(|(_, at)| *at);
+            if end.is_some() {
+                times.extend(time(part.name, before, end));
+                before = end;
+            }
+        }
+        times.extend(time("all", Some(started), Some(Instant::now())));
+        times
     }
 }
 

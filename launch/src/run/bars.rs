@@ -1,13 +1,11 @@
 //! What the terminal shows while a scan passes: one line a phase.
 
+use super::parts::{self, Part};
+use crate::plan::Plan;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal as _;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-/// The parts of a scan, in order; each ends when the node that it is named for has finished.
-pub const PARTS: [(&str, &str); 4] =
-    [("sweep", "camera"), ("surface", "surface"), ("colour", "paint"), ("files", "export")];
 
 /// Shared by the launcher, the listener and the log.
 #[derive(Clone)]
@@ -15,6 +13,7 @@ pub struct Bars {
     all: MultiProgress,
     state: Arc<Mutex<State>>,
     sweep_s: Option<f64>,
+    parts: Arc<[Part]>,
 }
 
 struct State {
@@ -25,9 +24,10 @@ struct State {
 
 impl Bars {
     /// Nothing shown yet.
-    pub fn new(sweep_s: Option<f64>) -> Self {
+    pub fn new(sweep_s: Option<f64>, plan: &Plan) -> Self {
         let state = State { bar: ProgressBar::hidden(), part: 0, began: Instant::now() };
-        Self { all: MultiProgress::new(), state: Arc::new(Mutex::new(state)), sweep_s }
+        let parts = parts::of(plan).collect();
+        Self { all: MultiProgress::new(), state: Arc::new(Mutex::new(state)), sweep_s, parts }
     }
 
     fn with<T>(&self, change: impl FnOnce(&mut State) -> T) -> T {
@@ -77,21 +77,21 @@ impl Bars {
     }
 
     /// A node has done its work: the part that ends with it is over.
-    pub fn finished(&self, kind: &str) {
-        let Some(part) = PARTS.iter().position(|(_, ends_with)| kind.starts_with(ends_with)) else { return };
+    pub fn finished(&self, node: &str) {
+        let Some(part) = self.parts.iter().position(|part| part.ends_with(node)) else { return };
         let lines: Vec<String> = self.with(|state| {
             let mut lines = Vec::new();
             while state.part <= part {
                 let seconds = std::mem::replace(&mut state.began, Instant::now()).elapsed().as_secs_f64();
-                lines.push(format!("{:<8} {seconds:>6.1} s", PARTS[state.part].0));
+                lines.push(format!("{:<10} {seconds:>6.1} s", self.parts[state.part].name));
                 state.bar.finish_and_clear();
                 state.part += 1;
             }
             lines
         });
         lines.iter().for_each(|line| self.say(line));
-        if let Some((name, _)) = PARTS.get(part + 1) {
-            let bar = self.spinner((*name).to_owned());
+        if let Some(next) = self.parts.get(part + 1) {
+            let bar = self.spinner(next.name.to_owned());
             self.with(|state| state.bar = bar);
         }
     }

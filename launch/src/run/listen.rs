@@ -17,8 +17,10 @@ pub struct Listener {
     finish: Arc<AtomicBool>,
 }
 
-/// Silence of this length is the end of what was said.
+/// Silence of this length is the end of what was said ...
 const NAP: Duration = Duration::from_millis(100);
+/// ... and nodes that live on are heard no longer than this.
+const LAST_WORDS: Duration = Duration::from_secs(3);
 
 struct Ears {
     healths: Subscriber<Health>,
@@ -50,10 +52,13 @@ impl Listener {
         let finish = Arc::new(AtomicBool::new(false));
         let finishing = finish.clone();
         let thread = std::thread::spawn(move || {
-            let mut harvest = Harvest::default();
+            let (mut harvest, mut closing) = (Harvest::default(), None);
             // The nodes' last accounts come as they close: they may still be on the way.
-            while bus.wait(NAP) || !finishing.load(Ordering::SeqCst) {
+            while bus.wait(NAP) || closing.is_none() {
                 ears.hear(&mut harvest, &bars);
+                if finishing.load(Ordering::SeqCst) && closing.get_or_insert_with(Instant::now).elapsed() > LAST_WORDS {
+                    break;
+                }
             }
             harvest
         });
@@ -89,7 +94,7 @@ impl Ears {
         }
         while let Some(cloud) = self.clouds.next() {
             if cloud.header.is_end() {
-                harvest.balls = cloud.points.len() as u64;
+                harvest.cloud = cloud.points.0;
             }
         }
         while let Some(mesh) = self.meshes.next() {
@@ -107,7 +112,7 @@ impl Ears {
                 p50.push(health.latency_p50_nanos);
                 p99.push(health.latency_p99_nanos);
             }
-            harvest.note(health);
+            harvest.accounts.note(health);
         }
     }
 }

@@ -3,17 +3,22 @@
 mod account;
 mod bars;
 pub mod before;
+pub mod evidence;
 mod harvest;
 mod listen;
+mod parts;
+mod standing;
 
 pub use harvest::Harvest;
+pub use standing::Standing;
 
 use crate::launcher::{Launcher, Options};
 use crate::log::{self, Line, Sink};
 use crate::operator::Order;
 use crate::plan::Plan;
 use crate::running;
-use anyhow::{Context as _, Result, bail};
+use crate::up::Interrupts;
+use anyhow::{Context as _, Result, anyhow, bail};
 use bars::Bars;
 use listen::Listener;
 use std::fs::File;
@@ -28,25 +33,41 @@ pub struct Course<'a> {
     pub out: &'a Path,
     /// What the bar of the sweep counts to; unknown for a recording.
     pub sweep_s: Option<f64>,
-    /// Keep the rig up until Ctrl-C when the scan is done, so that its page can be looked at.
+    /// Keep the rig up behind a scan that went well, so that its page can be looked at.
     pub linger: bool,
 }
 
-/// Starts the plan, lets one scan pass through, and stops it. What was gathered is returned together with what failed:
-/// a failure does not throw away the rest.
-pub fn run(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> {
-    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
-    let outcome = runtime.block_on(pass(plan, course));
-    runtime.shutdown_background();
-    outcome
+/// One scan that has passed.
+pub struct Passed {
+    /// What was gathered, whatever failed.
+    pub harvest: Harvest,
+    /// What failed.
+    pub outcome: Result<()>,
+    /// The rig, when it was to linger and all went well.
+    pub standing: Option<Standing>,
 }
 
-async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> {
-    let bars = Bars::new(course.sweep_s);
+/// Starts the plan and lets one scan pass through. A failure does not throw away the rest.
+pub fn run(plan: Plan, course: &Course<'_>) -> Result<Passed> {
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build()?;
+    let (harvest, outcome, rig) = runtime.block_on(pass(plan, course))?;
+    let standing = match rig {
+        Some(rig) => Some(Standing::new(runtime, rig)),
+        None => {
+            runtime.shutdown_background();
+            None
+        }
+    };
+    Ok(Passed { harvest, outcome, standing })
+}
+
+async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>, Option<standing::Rig>)> {
+    let bars = Bars::new(course.sweep_s, &plan);
     let sink = sink(&course.out.join("log.txt"), &bars)?;
     let options = Options { executable: std::env::current_exe()?, machine: None, sink };
+    let mut interrupts = Interrupts::open()?;
     bars.starting(plan.nodes.len());
-    let mut launcher = Launcher::start(plan, options).await?;
+    let launcher = Launcher::start(plan, options).await?;
     // For `limn top` and its like. Two demos may well run at once: only one of them is found.
     let announced =
         running::folder().and_then(|folder| running::announce(&folder, &launcher.plan().name, launcher.bus()));
@@ -54,22 +75,24 @@ async fn pass(plan: Plan, course: &Course<'_>) -> Result<(Harvest, Result<()>)> 
         tracing::warn!("`limn top` and its like will not find this rig: {error:#}");
     }
     let listener = Listener::start(launcher.bus(), launcher.plan(), bars.clone())?;
-    let interrupted = tokio::signal::ctrl_c();
     let outcome = tokio::select! {
         outcome = course_of(&launcher, &bars) => outcome,
-        _ = interrupted => Err(anyhow::anyhow!("interrupted")),
+        () = interrupts.next() => Err(anyhow!("interrupted")),
     };
-    if course.linger && outcome.is_ok() {
-        bars.say("done; the page stays up until Ctrl-C");
-        let _ = tokio::signal::ctrl_c().await;
+    let mut rig = standing::Rig { launcher, interrupts, announced: announced.ok() };
+    let lingers = course.linger && outcome.is_ok();
+    if !lingers {
+        rig.stop().await;
     }
-    drop(announced);
-    launcher.stop().await;
-    let outcome = outcome.and_then(|()| launcher.check());
+    let outcome = outcome.and_then(|()| rig.launcher.check());
     let harvest = tokio::task::spawn_blocking(move || listener.finish()).await?;
     bars.done();
-    let outcome = outcome.and_then(|()| harvest.emptiness().map_or(Ok(()), |why| Err(anyhow::anyhow!(why))));
-    Ok((harvest, outcome))
+    let outcome = outcome.and_then(|()| harvest.emptiness().map_or(Ok(()), |why| Err(anyhow!(why))));
+    if lingers && outcome.is_err() {
+        rig.stop().await;
+    }
+    let stands = lingers && outcome.is_ok();
+    Ok((harvest, outcome, stands.then_some(rig)))
 }
 
 async fn course_of(launcher: &Launcher, bars: &Bars) -> Result<()> {

@@ -4,6 +4,7 @@
 
 use formats::scan_folder::{POSITION_SIGMA_M, ScanFolder, ScanFolderWriter};
 use geometry::Rig;
+use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use wire::{Bulk, Frame, Header, Light, Phase, PixelFormat, Pose, Quality, RigidPose};
@@ -179,5 +180,108 @@ fn the_real_scan_of_a_plate_is_read() {
         let frame = scan.frame(index).unwrap().unwrap();
         frame.check().unwrap();
         assert_eq!(frame.header.stamp_nanos, scan.poses[index].header.stamp_nanos);
+    }
+}
+
+/// What may stand in a cell.
+const CELLS: &[&str] = &[
+    "",
+    "0",
+    "-1",
+    "1",
+    "0.5",
+    "-0.0",
+    "1e-300",
+    "1e300",
+    "1e999",
+    "nan",
+    "inf",
+    "9223372036.9",
+    "99999999999999999999",
+    "shape",
+    "colour",
+    "both",
+    "laser",
+    "lamp",
+    "good",
+    "a.png",
+    "../a.png",
+    "\"",
+    "\"a\"",
+    "é",
+    " ",
+    "stamp_s",
+    "# x",
+];
+
+/// A table of cells that are each good or odd.
+fn table(columns: &'static [(&'static str, &'static str)]) -> impl Strategy<Value = String> {
+    let odd = prop::option::weighted(0.1, prop::sample::select(CELLS));
+    prop::collection::vec(prop::collection::vec(odd, columns.len()), 0..6).prop_map(move |rows| {
+        let head: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        let line = |(k, row): (usize, Vec<Option<&str>>)| {
+            let cells = row
+                .iter()
+                .zip(columns)
+                .map(|(odd, (_, good))| odd.map_or(good.replace("K", &k.to_string()), str::to_owned));
+            cells.collect::<Vec<_>>().join(",")
+        };
+        let lines: Vec<String> = rows.into_iter().enumerate().map(line).collect();
+        format!("{}\n{}\n", head.join(","), lines.join("\n"))
+    })
+}
+
+const FRAME_COLUMNS: &[(&str, &str)] = &[
+    ("stamp_s", "K.5"),
+    ("phase", "shape"),
+    ("file", "a.png"),
+    ("light", "laser"),
+    ("exposure_s", "0.002"),
+    ("gain", "1"),
+    ("gamma", "1"),
+];
+const POSE_COLUMNS: &[(&str, &str)] = &[
+    ("stamp_s", "K.25"),
+    ("x_m", "0.1"),
+    ("y_m", "0"),
+    ("z_m", "0.3"),
+    ("qw", "1"),
+    ("qx", "0"),
+    ("qy", "0"),
+    ("qz", "0"),
+];
+
+/// Opens, or says why not with the name of the file.
+fn opens_or_names_the_file(frames: &[u8], poses: &[u8]) {
+    let folder = tempfile::tempdir().unwrap();
+    let tables = [("rig.toml", RIG.as_bytes()), ("a.png", b""), ("frames.csv", frames), ("poses.csv", poses)];
+    tables.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).unwrap());
+    match ScanFolder::open(folder.path()) {
+        Ok(scan) => {
+            assert!(scan.frames.windows(2).all(|pair| pair[0].stamp_nanos < pair[1].stamp_nanos));
+            assert!(scan.poses.iter().all(|pose| geometry::rigid_from_wire(&pose.world_from_body).is_some()));
+        }
+        Err(error) => assert!(error.to_string().contains(".csv"), "{error}"),
+    }
+}
+
+const GOOD_FRAMES: &str = "stamp_s,phase,file\n0.5,shape,a.png\n";
+const GOOD_POSES: &str = "stamp_s,x_m,y_m,z_m,qw,qx,qy,qz\n0.5,0,0,0,1,0,0,0\n";
+
+proptest! {
+    #[test]
+    fn odd_cells_of_frames_csv(frames in table(FRAME_COLUMNS)) {
+        opens_or_names_the_file(frames.as_bytes(), GOOD_POSES.as_bytes());
+    }
+
+    #[test]
+    fn odd_cells_of_poses_csv(poses in table(POSE_COLUMNS)) {
+        opens_or_names_the_file(GOOD_FRAMES.as_bytes(), poses.as_bytes());
+    }
+
+    #[test]
+    fn tables_of_garbage(frames in prop::collection::vec(any::<u8>(), 0..200), poses in prop::collection::vec(any::<u8>(), 0..200)) {
+        opens_or_names_the_file(&frames, GOOD_POSES.as_bytes());
+        opens_or_names_the_file(GOOD_FRAMES.as_bytes(), &poses);
     }
 }

@@ -18,7 +18,9 @@ pub enum SheetError {
     #[error("[laser] normal = {0:?} has no direction")]
     Normal([f64; 3]),
     /// Through the camera's centre every ray lies in the sheet, or none crosses it.
-    #[error("[laser] distance_m = {0}: the sheet must pass beside the camera's centre, or nothing can be triangulated")]
+    #[error(
+        "[laser] distance_m = {0} along a unit normal: the sheet must pass beside the camera's centre, or nothing can be triangulated"
+    )]
     Distance(f64),
 }
 
@@ -29,10 +31,11 @@ impl LaserSheet {
         if !norm.is_finite() || norm < 1e-9 {
             return Err(SheetError::Normal(normal.into()));
         }
+        let distance_m = distance_m / norm;
         if !distance_m.is_finite() || distance_m.abs() < 1e-6 {
             return Err(SheetError::Distance(distance_m));
         }
-        Ok(Self { normal: normal / norm, distance_m: distance_m / norm })
+        Ok(Self { normal: normal / norm, distance_m })
     }
 
     /// Signed distance of a point from the sheet.

@@ -16,6 +16,18 @@ element! {
 }
 
 layout! {
+    /// What a scan determines, whatever its tracker.
+    pub struct Observed {
+        /// The share of the surface on which stripes cross by 30 degrees or more, 0..1.
+        pub crossing: f64,
+        /// The direction of most stripes, in the world: a unit vector, either way round.
+        pub stripes_along: [f64; 3],
+        /// Of the six motions of a rigid piece against the surface, so many are held; 3 on a plane.
+        pub held_directions: u32,
+    }
+}
+
+layout! {
     /// What one revision rests on. Sigmas are one standard deviation.
     pub struct Refinement {
         /// The revision is that of the trajectory.
@@ -36,12 +48,14 @@ layout! {
         pub hand_eye_shift_sigma_m: [f64; 3],
         /// How well the turn is known.
         pub hand_eye_turn_sigma_rad: [f64; 3],
-        /// Frames left out, because they fit nowhere or nothing held them.
-        pub frames_dropped: u64,
+        /// What the scan determines; `None` when nobody has asked yet (live revisions).
+        pub observed: Option<Observed>,
         /// What the operator should know, in sentences.
         pub notices: Vec<String>,
         /// The frames that were kept, in the order of their stamps.
         pub frames: Bulk<FrameFit>,
+        /// Those that were left out, because they fit nowhere or nothing held them.
+        pub left_out: Bulk<FrameFit>,
     }
 }
-message!(Refinement @ 1);
+message!(Refinement @ 2);

@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+mod samples;
+
 use proptest::prelude::*;
+use samples::Sample as _;
 use std::io::Read as _;
 use wire::*;
 
@@ -19,20 +22,18 @@ fn reads_or_refuses<M: Message>(bytes: &[u8]) {
 }
 
 fn all(bytes: &[u8]) {
-    reads_or_refuses::<Frame>(bytes);
-    reads_or_refuses::<Pose>(bytes);
-    reads_or_refuses::<Stripe>(bytes);
-    reads_or_refuses::<Profile>(bytes);
-    reads_or_refuses::<Scan>(bytes);
-    reads_or_refuses::<Trajectory>(bytes);
-    reads_or_refuses::<Cloud>(bytes);
-    reads_or_refuses::<Mesh>(bytes);
-    reads_or_refuses::<Model>(bytes);
-    reads_or_refuses::<Calibration>(bytes);
-    reads_or_refuses::<RunPhase>(bytes);
-    reads_or_refuses::<Health>(bytes);
-    reads_or_refuses::<Progress>(bytes);
-    reads_or_refuses::<LogLine>(bytes);
+    macro_rules! read {
+        ($($message:ty),*) => { $(reads_or_refuses::<$message>(bytes);)* };
+    }
+    for_all_messages!(read);
+}
+
+/// The bytes of a sample of each message.
+fn samples() -> Vec<Vec<u8>> {
+    macro_rules! bytes {
+        ($($message:ty),*) => { vec![$(codec::encode(&<$message>::sample())),*] };
+    }
+    for_all_messages!(bytes)
 }
 
 fn scan(points: usize) -> Scan {
@@ -53,11 +54,19 @@ proptest! {
     }
 
     #[test]
-    fn a_message_with_one_byte_changed(place in 0usize..300, value: u8) {
-        let mut bytes = codec::encode(&scan(8));
-        let place = place % bytes.len();
+    fn any_message_with_one_byte_changed(which: prop::sample::Index, place: prop::sample::Index, value: u8) {
+        let samples = samples();
+        let mut bytes = samples[which.index(samples.len())].clone();
+        let place = place.index(bytes.len());
         bytes[place] = value;
         all(&bytes);
+    }
+
+    #[test]
+    fn any_message_cut_short(which: prop::sample::Index, place: prop::sample::Index) {
+        let samples = samples();
+        let bytes = &samples[which.index(samples.len())];
+        all(&bytes[..place.index(bytes.len())]);
     }
 
     #[test]

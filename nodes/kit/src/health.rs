@@ -49,6 +49,10 @@ impl Account {
         }
     }
 
+    pub(crate) fn works(&mut self, time: Duration) {
+        self.busy += time;
+    }
+
     pub(crate) fn wakes(&mut self) {
         self.woke = Some(Instant::now());
     }

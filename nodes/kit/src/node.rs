@@ -213,6 +213,11 @@ impl Node {
         self.account.refuse(reason, count);
     }
 
+    /// Counts what another thread of this node has worked, beside the time between two waits.
+    pub fn worked(&mut self, time: Duration) {
+        self.account.works(time);
+    }
+
     /// Notes that everything up to this message is done: sources at a fast pace wait for it.
     pub fn finished(&mut self, header: &Header) -> anyhow::Result<()> {
         self.account.finished = *header;

@@ -29,6 +29,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     node.ready()?;
     while node.wait() {
         inputs.hear(&mut node, &mut course)?;
+        node.worked(course.worker.worked());
         while let Some(answer) = course.worker.answer()? {
             course.take(&mut node, answer)?;
         }

@@ -1,17 +1,19 @@
 //! What a revision rests on, in the words and numbers of the bus.
 
 use crate::{Evidence, sentence};
-use wire::{Bulk, FrameFit, Header, Refinement};
+use wire::{Bulk, FrameFit, Header, Observed, Refinement};
 
 /// As a message.
 pub(crate) fn message(evidence: &Evidence, header: Header) -> Refinement {
     let metres = |mm: f64| mm * 1e-3;
     let nanos = |ms: f64| (ms * 1e6).round() as i64;
-    let fits = evidence.frames.iter().map(|frame| FrameFit {
-        stamp_nanos: frame.stamp_nanos,
-        residual_m: frame.residual_mm.map_or(f32::NAN, |mm| metres(mm) as f32),
-        sigma_m: metres(frame.sigma_mm) as f32,
-    });
+    let fit = |stamp_nanos: i64, residual_mm: Option<f64>, sigma_mm: f64| FrameFit {
+        stamp_nanos,
+        residual_m: residual_mm.map_or(f32::NAN, |mm| metres(mm) as f32),
+        sigma_m: metres(sigma_mm) as f32,
+    };
+    let kept = evidence.frames.iter().map(|frame| fit(frame.stamp_nanos, frame.residual_mm, frame.sigma_mm));
+    let left_out = evidence.dropped.iter().map(|frame| fit(frame.stamp_nanos, frame.residual_mm, frame.sigma_mm));
     let hand_eye = &evidence.hand_eye;
     Refinement {
         header,
@@ -23,8 +25,13 @@ pub(crate) fn message(evidence: &Evidence, header: Header) -> Refinement {
         hand_eye_turn_rad: hand_eye.turn_deg.map(f64::to_radians),
         hand_eye_shift_sigma_m: hand_eye.shift_sigma_mm.map(metres),
         hand_eye_turn_sigma_rad: hand_eye.turn_sigma_deg.map(f64::to_radians),
-        frames_dropped: evidence.dropped.len() as u64,
+        observed: evidence.observed.map(|observed| Observed {
+            crossing: observed.crossing,
+            stripes_along: observed.stripes_along,
+            held_directions: observed.held_directions as u32,
+        }),
         notices: evidence.notices.iter().map(sentence).collect(),
-        frames: fits.collect::<Bulk<_>>(),
+        frames: kept.collect::<Bulk<_>>(),
+        left_out: left_out.collect::<Bulk<_>>(),
     }
 }

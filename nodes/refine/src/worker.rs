@@ -2,7 +2,10 @@
 
 use crate::{Config, RefineError, Refinement, Refiner};
 use anyhow::anyhow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::time::{Duration, Instant};
 use wire::{Calibration, Pose, Profile};
 
 enum Order {
@@ -24,32 +27,27 @@ pub(crate) enum Answer {
 pub(crate) struct Worker {
     orders: Sender<Order>,
     answers: Receiver<Answer>,
+    /// What it has worked since somebody asked, in nanoseconds.
+    worked: Arc<AtomicU64>,
 }
 
 impl Worker {
     pub fn start(config: &Config, calibration: &Calibration) -> anyhow::Result<Self> {
         let mut refiner = Refiner::new(config.clone(), calibration)?;
         let ((orders, ordered), (answer, answers)) = (channel(), channel());
+        let worked = Arc::<AtomicU64>::default();
+        let spent = worked.clone();
         std::thread::Builder::new().name("refiner".to_owned()).spawn(move || {
             for order in ordered {
-                let said = match order {
-                    Order::Pose(pose) => {
-                        refiner.pose(&pose);
-                        continue;
-                    }
-                    Order::Profile(profile) => {
-                        refiner.profile(&profile);
-                        continue;
-                    }
-                    Order::Tick => Answer::Live(refiner.tick()),
-                    Order::Finish => Answer::Final(refiner.finish()),
-                };
-                if answer.send(said).is_err() {
+                let began = Instant::now();
+                let said = obey(&mut refiner, order);
+                spent.fetch_add(began.elapsed().as_nanos() as u64, Ordering::Relaxed);
+                if said.is_some_and(|said| answer.send(said).is_err()) {
                     return;
                 }
             }
         })?;
-        Ok(Self { orders, answers })
+        Ok(Self { orders, answers, worked })
     }
 
     pub fn pose(&self, pose: Pose) -> anyhow::Result<()> {
@@ -77,9 +75,24 @@ impl Worker {
         }
     }
 
+    /// How long it has worked since the last call.
+    pub fn worked(&self) -> Duration {
+        Duration::from_nanos(self.worked.swap(0, Ordering::Relaxed))
+    }
+
     fn give(&self, order: Order) -> anyhow::Result<()> {
         self.orders.send(order).map_err(|_| died())
     }
+}
+
+fn obey(refiner: &mut Refiner, order: Order) -> Option<Answer> {
+    match order {
+        Order::Pose(pose) => refiner.pose(&pose),
+        Order::Profile(profile) => refiner.profile(&profile),
+        Order::Tick => return Some(Answer::Live(refiner.tick())),
+        Order::Finish => return Some(Answer::Final(refiner.finish())),
+    }
+    None
 }
 
 fn died() -> anyhow::Error {

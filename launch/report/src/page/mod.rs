@@ -1,18 +1,22 @@
 //! One page that stands alone: no script, nothing fetched.
 
 mod chart;
+mod frames;
 mod pictures;
+mod refined;
 mod tables;
 mod text;
 
 use crate::{Exhibits, PageError, Report, error_map};
+use geometry::METRES_PER_MM;
 use text::{count, escape, number, percent};
 
 const STYLE: &str = include_str!("style.css");
 
 /// The page as text.
 pub fn html(report: &Report, exhibits: &Exhibits<'_>) -> Result<String, PageError> {
-    let end_mm = error_map::end_mm(report.shape().map_or(1.0, |c| c.model_to_truth.p95_mm));
+    let end_mm = error_map::end_mm(largest_mm(report, exhibits));
+    let accuracy_of = if report.shape().is_some() { "How far it is from the truth" } else { "How well it is known" };
     let title = if report.title.is_empty() { "A scan" } else { &report.title };
     let title = escape(title);
     Ok(format!(
@@ -23,10 +27,21 @@ pub fn html(report: &Report, exhibits: &Exhibits<'_>) -> Result<String, PageErro
         verdict(report),
         tables::key_figures(report),
         section("What was scanned, and what came out", &pictures::gallery(exhibits, end_mm)?),
-        section("How far it is from the truth", &accuracy(report, end_mm)),
+        section(accuracy_of, &accuracy(report, end_mm)),
         section("The way there", &way(report)),
         section("How it was made", &made(report)),
     ))
+}
+
+/// What the colours of the maps must tell apart: the error, or what is expected of it when nobody knows the truth.
+fn largest_mm(report: &Report, exhibits: &Exhibits<'_>) -> f64 {
+    if let Some(shape) = report.shape() {
+        return shape.model_to_truth.p95_mm;
+    }
+    let stated = exhibits.stated.map(|(_, sigma_m)| sigma_m.iter().map(|sigma| f64::from(*sigma)));
+    let mut sigmas: Vec<f64> = stated.into_iter().flatten().filter(|sigma| sigma.is_finite()).collect();
+    sigmas.sort_by(f64::total_cmp);
+    sigmas.get(sigmas.len() * 19 / 20).map_or(1.0, |sigma| sigma / METRES_PER_MM)
 }
 
 fn section(heading: &str, content: &str) -> String {
@@ -70,7 +85,7 @@ fn accuracy(report: &Report, end_mm: f64) -> String {
         text.push_str(&tables::stated(stated));
     }
     if let Some(refined) = &report.refinement {
-        text.push_str(&tables::refined(refined));
+        text.push_str(&refined::refined(refined));
     }
     if let Some(colour) = &report.colour {
         let three = |values: [f64; 3]| values.map(number).join(", ");

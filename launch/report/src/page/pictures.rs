@@ -13,8 +13,8 @@ const HEIGHT: u32 = 340;
 /// Albedo of a surface without colours.
 const PLASTER: [f32; 3] = [0.62, 0.60, 0.56];
 
-/// The pictures, row by row: truth, before refinement, model, shape alone, error map, expected error; what is missing is
-/// left out. The views are chosen by the truth, or by the model when there is none.
+/// The pictures, row by row: truth, before refinement, model, shape alone, error map, residuals, expected error; what is
+/// missing is left out. The views are chosen by the truth, or by the model when there is none.
 pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError> {
     let Some(framing) = exhibits.truth.or(exhibits.model) else { return Ok(String::new()) };
     let views = four_views(&framing.mesh, WIDTH, HEIGHT);
@@ -29,18 +29,34 @@ pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError
     if let Some(model) = exhibits.model {
         rows.push_str(&row("Model", "", &painted(model, &views))?);
         rows.push_str(&row("Shape", "The model without its colours.", &plaster(&model.mesh, &views))?);
-        if let Some(truth) = exhibits.truth {
-            let map = error_pictures(&model.mesh, &truth.mesh, &views, end_mm)?;
-            let text = "Distance of the model from the truth: blue is inside, red outside.";
-            rows.push_str(&row("Error", &format!("{text}{}", chart::legend(end_mm)), &map)?);
-        }
+    }
+    rows.push_str(&maps(exhibits, &views, end_mm)?);
+    Ok(format!("<section class=\"gallery\">{rows}</section>"))
+}
+
+/// What is shown as colours of one scale, which stands beside the first of them.
+fn maps(exhibits: &Exhibits<'_>, views: &[View], end_mm: f64) -> Result<String, PageError> {
+    let mut maps: Vec<(&str, &str, Vec<RgbaImage>)> = Vec::new();
+    if let (Some(model), Some(truth)) = (exhibits.model, exhibits.truth) {
+        let pictures = error_pictures(&model.mesh, &truth.mesh, views, end_mm)?;
+        maps.push(("Error", "Distance of the model from the truth: blue is inside, red outside.", pictures));
+    }
+    if let Some((mesh, residual_m)) = exhibits.residual {
+        let caption =
+            "How far the measured points lie off the surface, about each place: rms, on the red half of the scale.";
+        maps.push(("Residuals", caption, size_pictures(mesh, residual_m, views, end_mm)));
     }
     if let Some((mesh, sigma_m)) = exhibits.stated {
         let caption =
             "What the scan itself says of its error: one standard deviation, on the red half of the same scale.";
-        rows.push_str(&row("Expected error", caption, &stated_pictures(mesh, sigma_m, &views, end_mm))?);
+        maps.push(("Expected error", caption, size_pictures(mesh, sigma_m, views, end_mm)));
     }
-    Ok(format!("<section class=\"gallery\">{rows}</section>"))
+    let mut rows = String::new();
+    for (i, (name, caption, pictures)) in maps.iter().enumerate() {
+        let scale = if i == 0 { chart::legend(end_mm) } else { String::new() };
+        rows.push_str(&row(name, &format!("{caption}{scale}"), pictures)?);
+    }
+    Ok(rows)
 }
 
 fn row(name: &str, caption: &str, pictures: &[RgbaImage]) -> Result<String, PageError> {
@@ -65,11 +81,14 @@ fn plaster(mesh: &TriangleMesh, views: &[View]) -> Vec<RgbaImage> {
     views.iter().map(|view| render(mesh, view, |_, _| PLASTER)).collect()
 }
 
-fn stated_pictures(mesh: &TriangleMesh, sigma_m: &[f32], views: &[View], end_mm: f64) -> Vec<RgbaImage> {
-    let sigma_mm = |i: u32| sigma_m.get(i as usize).map_or(0.0, |sigma| f64::from(*sigma) / METRES_PER_MM);
+/// Sizes (never negative) of the vertices as colours; a triangle takes those of its corners that have one.
+fn size_pictures(mesh: &TriangleMesh, size_m: &[f32], views: &[View], end_mm: f64) -> Vec<RgbaImage> {
+    let size_mm = |i: u32| size_m.get(i as usize).map_or(f64::NAN, |size| f64::from(*size) / METRES_PER_MM);
     let colour = |triangle: u32, weights: [f64; 3]| {
-        let corners = mesh.triangles[triangle as usize].map(sigma_mm);
-        error_map::colour(corners.iter().zip(weights).map(|(d, w)| d * w).sum(), end_mm)
+        let corners = mesh.triangles[triangle as usize].map(size_mm);
+        let known = corners.iter().zip(weights).filter(|(size, _)| size.is_finite());
+        let (sum, weight) = known.fold((0.0, 0.0), |(sum, all), (size, w)| (sum + size * w, all + w));
+        if weight > 0.0 { error_map::colour(sum / weight, end_mm) } else { PLASTER }
     };
     views.iter().map(|view| render(mesh, view, colour)).collect()
 }

@@ -1,7 +1,7 @@
 //! The numbers, as tables and as the row of figures at the head of the page.
 
 use super::text::{count, escape, known, number, percent};
-use crate::{Aligned, BorderError, Refined, Report, Stage, StatedError};
+use crate::{Aligned, BorderError, Report, Stage, StatedError};
 use geometry::{Comparison, Completeness};
 use std::fmt::Write as _;
 
@@ -111,33 +111,6 @@ pub fn borders(borders: &BorderError) -> String {
             ("places that no picture saw", count(borders.unseen as u64)),
         ],
     )
-}
-
-/// What refinement has done.
-pub fn refined(refined: &Refined) -> String {
-    let without = refined.without.as_ref().map(|without| {
-        let d = &without.comparison.model_to_truth;
-        format!("{} mm, 95 % within {} mm", number(d.rms_mm), number(d.p95_mm))
-    });
-    let [offset, sigma] = refined.offset_error_ms.map(number);
-    let mut text = facts(
-        "What refinement has done",
-        &[
-            ("root mean square without it", without.unwrap_or_default()),
-            ("points off their common surface, before", format!("{} mm", number(refined.residual_before_mm))),
-            ("and after", format!("{} mm", number(refined.residual_after_mm))),
-            ("the rig's pose offset is too large by", format!("{offset} \u{b1} {sigma} ms")),
-            ("hand-eye shift corrected by", format!("{} mm", number(refined.hand_eye_shift_mm))),
-            ("hand-eye rotation corrected by", format!("{} degrees", number(refined.hand_eye_turn_deg))),
-            ("error of a frame along its rays, as stated", format!("{} mm", number(refined.frame_sigma_mm))),
-            ("frames left out", count(refined.frames_dropped)),
-        ],
-    );
-    if !refined.notices.is_empty() {
-        let notices: String = refined.notices.iter().map(|notice| format!("<li>{}</li>", escape(notice))).collect();
-        text.push_str(&format!("<div class=\"verdict\"><ul>{notices}</ul></div>"));
-    }
-    text
 }
 
 /// Each node's work.
