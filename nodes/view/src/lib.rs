@@ -1,16 +1,16 @@
 //! The eyes of the operator: every stream of a rig, live, in Rerun's web page, which is served from within.
 //!
-//! In: frame, stripe, trajectory (the tracker's and the refined one), what refinement rests on, scan, cloud, mesh, model, health
-//! and log. Out: nothing on the bus; two servers on
-//! loopback, one for the page and one for its data. Nobody waits for this node: it takes the newest picture, thins what
+//! In: frame, stripe, trajectory (the tracker's and the refined one), what refinement rests on, scan, cloud, mesh, model,
+//! health and log. Out: nothing on the bus; two servers on loopback, one for the page and one for its data. The handset and
+//! its sheet of light ([`handset`]) follow the live pose. Nobody waits for this node: it takes the newest picture, thins what
 //! comes too often ([`Config`]), and its end changes nothing for the others.
 //!
 //! What grows is logged in parts: the cloud in chunks of [`cloud::CHUNK`] balls, of which only those that changed are
 //! sent again, because the page keeps all that it ever got, up to [`Config::memory_mib`].
 
-#[cfg(feature = "node")]
 pub mod cloud;
 pub mod config;
+pub mod handset;
 #[cfg(feature = "node")]
 mod layout;
 #[cfg(feature = "node")]
@@ -20,7 +20,6 @@ pub mod picture;
 mod serve;
 #[cfg(feature = "node")]
 mod show;
-#[cfg(feature = "node")]
-mod ways;
+pub mod ways;
 
 pub use config::{Config, ConfigError};

@@ -90,7 +90,7 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
             ways.refined(&way);
         }
         if let Some(evidence) = inputs.refinements.newest() {
-            ways.show(rec, &evidence)?;
+            show::ways(rec, &ways, &evidence)?;
         }
         while let Some(changes) = inputs.clouds.next() {
             painted &= changes.header.phase == Phase::End;

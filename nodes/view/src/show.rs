@@ -1,12 +1,14 @@
 //! One function a message: what of it the operator sees, and where.
 
 use crate::cloud::ChunkedCloud;
+use crate::handset::handset;
 use crate::picture::Picture;
+use crate::ways::Ways;
 use rerun::{
     Boxes3D, ImageFormat, LineStrips3D, Mesh3D, Pinhole, Points2D, Points3D, Quaternion, RecordingStream, Scalars,
     TextLog, Transform3D, ViewCoordinates,
 };
-use wire::{Calibration, Header, Health, LogLevel, LogLine, Mesh, Model, Scan, Stripe, Trajectory};
+use wire::{Calibration, Header, Health, LogLevel, LogLine, Mesh, Model, Refinement, Scan, Stripe, Trajectory};
 
 type Result = rerun::RecordingStreamResult<()>;
 
@@ -14,6 +16,12 @@ type Result = rerun::RecordingStreamResult<()>;
 const LASER_RED: [u8; 3] = [255, 60, 40];
 const CLAY: [u8; 3] = [196, 178, 158];
 const TRAIL: [u8; 3] = [90, 150, 220];
+const REFINED: [u8; 3] = [70, 190, 110];
+const HOUSING: [u8; 3] = [120, 124, 130];
+/// Seen through: the thing behind it is what counts.
+const LIGHT: [u8; 4] = [255, 60, 40, 60];
+/// Of the refined way's samples, which are as dense as the hand trembles.
+const DRAWN_EVERY: usize = 10;
 
 /// All that follows was measured at this stamp.
 pub(crate) fn at(rec: &RecordingStream, header: &Header) {
@@ -33,7 +41,17 @@ pub(crate) fn calibration(rec: &RecordingStream, calibration: &Calibration, shru
         .with_principal_point([(camera.cx / by) as f32, (camera.cy / by) as f32])
         .with_camera_xyz(rerun::components::ViewCoordinates::RDF)
         .with_image_plane_distance(0.06);
-    rec.log_static("world/camera", &pinhole)
+    rec.log_static("world/camera", &pinhole)?;
+    // Beside the camera, not below it: what is below a pinhole is drawn in its picture.
+    let Some(handset) = handset(&calibration.laser) else { return Ok(()) };
+    let [middle, half] = handset.housing;
+    let housing = Boxes3D::from_centers_and_half_sizes([middle], [half]).with_colors([HOUSING]).with_radii([0.0004]);
+    rec.log_static("world/handset/housing", &housing.with_fill_mode(rerun::FillMode::Solid))?;
+    let sheet = Mesh3D::new(handset.sheet).with_triangle_indices([[0, 1, 2], [0, 2, 1]]);
+    rec.log_static(
+        "world/handset/sheet",
+        &sheet.with_albedo_factor(rerun::Rgba32::from_unmultiplied_rgba(LIGHT[0], LIGHT[1], LIGHT[2], LIGHT[3])),
+    )
 }
 
 pub(crate) fn picture(rec: &RecordingStream, picture: &Picture) -> Result {
@@ -53,12 +71,23 @@ pub(crate) fn trajectory(rec: &RecordingStream, trajectory: &Trajectory, trail: 
     let Some(last) = trajectory.samples.last() else { return Ok(()) };
     let [w, x, y, z] = last.rotation_wxyz.map(|q| q as f32);
     let place = last.translation_m.map(|t| t as f32);
-    rec.log("world/camera", &Transform3D::from_translation_rotation(place, Quaternion::from_xyzw([x, y, z, w])))?;
+    let pose = Transform3D::from_translation_rotation(place, Quaternion::from_xyzw([x, y, z, w]));
+    rec.log("world/camera", &pose)?;
+    rec.log("world/handset", &pose)?;
     // The trail of the last seconds shows the stroke; the whole of it would hide the thing.
     trail.push(place);
     let start = trail.len().saturating_sub(200);
     trail.drain(..start);
     rec.log("world/trail", &LineStrips3D::new([trail.clone()]).with_colors([TRAIL]).with_radii([0.0004]))
+}
+
+/// The tracker's way, the refined one, and the pictures on it.
+pub(crate) fn ways(rec: &RecordingStream, ways: &Ways, evidence: &Refinement) -> Result {
+    let line = |places: Vec<[f32; 3]>, colour| LineStrips3D::new([places]).with_colors([colour]).with_radii([4e-4]);
+    rec.log("way/tracker", &line(ways.by_tracker().to_vec(), TRAIL))?;
+    rec.log("way/refined", &line(ways.by_refinement(DRAWN_EVERY), REFINED))?;
+    let (places, colours): (Vec<_>, Vec<_>) = ways.pictures(evidence).into_iter().unzip();
+    rec.log("way/pictures", &Points3D::new(places).with_colors(colours).with_radii([1.2e-3]))
 }
 
 pub(crate) fn scan(rec: &RecordingStream, scan: &Scan) -> Result {

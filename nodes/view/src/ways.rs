@@ -1,21 +1,14 @@
 //! Two ways of one hand: as the tracker had it, and as refinement has it, with how well each picture fits the surface.
 
-use rerun::{LineStrips3D, Points3D, RecordingStream};
 use wire::{FrameFit, Refinement, Trajectory};
 
-type Result = rerun::RecordingStreamResult<()>;
-
-const TRACKER: [u8; 3] = [90, 150, 220];
-const REFINED: [u8; 3] = [70, 190, 110];
 const NOT_KNOWN: [u8; 3] = [150, 150, 150];
 /// A picture that is so far off the surface is as red as can be.
 const WORST_M: f32 = 3e-4;
-/// Of the samples, which are as dense as the hand trembles.
-const DRAWN_EVERY: usize = 10;
 
 /// What has come of one scan.
 #[derive(Debug, Default)]
-pub(crate) struct Ways {
+pub struct Ways {
     scan: u64,
     revision: u32,
     tracker: Vec<[f32; 3]>,
@@ -24,12 +17,14 @@ pub(crate) struct Ways {
 }
 
 impl Ways {
+    /// Takes a piece of the tracker's own way; its last sample is enough to draw.
     pub fn tracker(&mut self, way: &Trajectory) {
         self.begin(way.header.scan);
         self.tracker.extend(way.samples.last().map(|sample| sample.translation_m.map(|t| t as f32)));
     }
 
-    /// Revision 0 is the tracker's own way, relayed.
+    /// Takes a piece of the refined way, or all of it. Revision 0 is the tracker's own, relayed, and is passed over; a
+    /// higher one starts afresh.
     pub fn refined(&mut self, way: &Trajectory) {
         self.begin(way.header.scan);
         if way.header.revision == 0 || way.samples.is_empty() {
@@ -49,16 +44,24 @@ impl Ways {
         }
     }
 
-    pub fn show(&self, rec: &RecordingStream, evidence: &Refinement) -> Result {
-        let line = |places: Vec<[f32; 3]>, colour| LineStrips3D::new([places]).with_colors([colour]).with_radii([4e-4]);
-        rec.log("way/tracker", &line(self.tracker.clone(), TRACKER))?;
-        rec.log("way/refined", &line(self.refined.iter().step_by(DRAWN_EVERY).map(|s| s.1).collect(), REFINED))?;
+    /// The tracker's way so far, in the world.
+    pub fn by_tracker(&self) -> &[[f32; 3]] {
+        &self.tracker
+    }
+
+    /// The refined way, of its samples every `one_in`th.
+    pub fn by_refinement(&self, one_in: usize) -> Vec<[f32; 3]> {
+        self.refined.iter().step_by(one_in.max(1)).map(|(_, place)| *place).collect()
+    }
+
+    /// Where each picture was taken, green when it fits the surface and red when it does not; those beyond the refined
+    /// way are left out.
+    pub fn pictures(&self, evidence: &Refinement) -> Vec<([f32; 3], [u8; 3])> {
         let at = |fit: &FrameFit| {
             let after = self.refined.partition_point(|(stamp, _)| *stamp < fit.stamp_nanos);
             Some((self.refined.get(after)?.1, by_residual(fit.residual_m)))
         };
-        let (places, colours): (Vec<_>, Vec<_>) = evidence.frames.iter().filter_map(at).unzip();
-        rec.log("way/pictures", &Points3D::new(places).with_colors(colours).with_radii([1.2e-3]))
+        evidence.frames.iter().filter_map(at).collect()
     }
 }
 
