@@ -1,13 +1,14 @@
 //! Streams to files.
 
 use crate::held::HeldCloud;
+use crate::tint::tint;
 use crate::{Config, ConfigError};
 use formats::mesh::LoadedMesh;
 use formats::{FormatError, Reason};
 use geometry::TriangleMesh;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
-use wire::{Cloud, Mesh, Model};
+use wire::{Cloud, CloudPoint, Mesh, Model};
 
 /// Why nothing was written.
 #[derive(Debug, thiserror::Error)]
@@ -69,9 +70,13 @@ impl Exporter {
 
     /// Writes the cloud as it stands, for a scan that was stopped before its end.
     pub fn save_cloud(&self) -> Result<Vec<Written>, ExportError> {
-        let (path, points) = (self.folder.join("cloud.ply"), self.cloud.points());
-        formats::cloud::write_ply(&path, &points)?;
-        Ok(vec![written(path, format!("{} points", points.len()))?])
+        Ok(vec![self.write_cloud(&self.cloud.points())?])
+    }
+
+    fn write_cloud(&self, points: &[CloudPoint]) -> Result<Written, ExportError> {
+        let path = self.folder.join("cloud.ply");
+        formats::cloud::write_ply(&path, points)?;
+        Ok(written(path, format!("{} points", points.len()))?)
     }
 
     /// Takes the surface; writes mesh.ply and mesh.stl when it is the final one.
@@ -88,7 +93,8 @@ impl Exporter {
         Ok(vec![written(ply, holds.clone())?, written(stl, holds)?])
     }
 
-    /// Takes the painted surface; writes model.glb and model.obj (with model.mtl and model.png) when it is the final one.
+    /// Takes the painted surface; writes model.glb and model.obj (with model.mtl and model.png) when it is the final one, and
+    /// cloud.ply again when the cloud that is held is that of the same scan: with the colours of the surface beside it.
     pub fn model(&self, model: &Model) -> Result<Vec<Written>, ExportError> {
         if !model.header.is_end() {
             return Ok(Vec::new());
@@ -104,6 +110,11 @@ impl Exporter {
             files.push(written(obj.with_extension("mtl"), "the material".into())?);
             let texels = format!("{}x{} texels", model.texture_width, model.texture_height);
             files.push(written(obj.with_extension("png"), texels)?);
+            let mut balls = self.cloud.points_of(model.header.scan);
+            if !balls.is_empty() {
+                tint(&mut balls, model).map_err(|reason| Reason::from(reason).of(&self.folder.join("cloud.ply")))?;
+                files.push(self.write_cloud(&balls)?);
+            }
         }
         Ok(files)
     }

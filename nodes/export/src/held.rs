@@ -24,6 +24,11 @@ impl HeldCloud {
         self.balls.extend(cloud.points.iter().map(|ball| (ball.id, *ball)));
     }
 
+    /// The same if they are of this scan; otherwise none.
+    pub fn points_of(&self, scan: u64) -> Vec<CloudPoint> {
+        if self.of.is_some_and(|(held, _)| held == scan) { self.points() } else { Vec::new() }
+    }
+
     /// The balls in the order of their numbers.
     pub fn points(&self) -> Vec<CloudPoint> {
         self.balls.values().copied().collect()

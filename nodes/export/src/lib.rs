@@ -4,7 +4,7 @@
 //! |---|---|
 //! | cloud | cloud.ply: position, normal, colour, count, sigma, spread of every ball |
 //! | mesh | mesh.ply, mesh.stl |
-//! | model | model.glb; model.obj with model.mtl and model.png |
+//! | model | model.glb; model.obj with model.mtl and model.png; cloud.ply again, with its colours |
 //!
 //! Messages are held until the last one of a stream has come (phase `End`); then its files are written, each under another
 //! name first, so that no half file is ever seen. A higher scan or revision starts afresh. Metres throughout, z up (glTF: y
@@ -31,6 +31,7 @@ mod exporter;
 mod held;
 #[cfg(feature = "node")]
 pub mod node;
+mod tint;
 
 pub use config::{Config, ConfigError};
 pub use exporter::{ExportError, Exporter, Written};

@@ -88,6 +88,28 @@ fn the_painted_surface_lies_where_it_was_scanned_in_every_format() {
 }
 
 #[test]
+fn the_cloud_takes_its_colours_from_the_surface_beside_it() {
+    let (_folder, mut exporter) = exporter();
+    let at = |id: u32, x: f32, z: f32| CloudPoint { position_m: [x, 0.05, z], ..ball(id, x) };
+    let own = CloudPoint { colour: [9, 8, 7, 255], ..at(3, 0.02, 0.5) };
+    let balls = vec![at(0, 0.02, 0.501), at(1, 0.08, 0.499), at(2, 0.02, 0.6), own];
+    exporter.cloud(&changes(Phase::End, 0, balls)).unwrap();
+    let written = exporter.model(&painted(Phase::End)).unwrap();
+    let path = &written.last().unwrap().path;
+    assert!(path.ends_with("cloud.ply"));
+    let colours: Vec<_> = cloud::read(path).unwrap().iter().map(|ball| ball.colour).collect();
+    // The third is far from the surface; the last had a colour of its own.
+    assert_eq!(colours, [[255, 0, 0, 255], [0, 0, 255, 255], [0; 4], [9, 8, 7, 255]]);
+
+    // That of another scan is left alone, and so is a cloud beside cells that nobody coloured.
+    let later = Model { header: Header { scan: 2, phase: Phase::End, ..Header::default() }, ..painted(Phase::End) };
+    assert!(exporter.model(&later).unwrap().iter().all(|file| !file.path.ends_with("cloud.ply")));
+    let blank = Model { texture: vec![[0; 4]; 2].into(), ..painted(Phase::End) };
+    exporter.model(&blank).unwrap();
+    assert_eq!(cloud::read(path).unwrap()[0].colour, [0; 4]);
+}
+
+#[test]
 fn an_empty_scan_is_told_and_leaves_what_was_there() {
     let (folder, mut exporter) = exporter();
     exporter.mesh(&square(Phase::End)).unwrap();
