@@ -182,7 +182,7 @@ fn every_command_explains_itself() {
     let help = desk.success(&["--help"]);
     for command in [
         "up", "scan", "top", "topics", "echo", "hz", "graph", "config", "stripe", "cluster", "surface", "compare",
-        "node", "devices", "emulate",
+        "node", "demo", "model", "refine", "record", "replay", "emulate", "devices",
     ] {
         assert!(help.contains(&format!("  {command} ")), "{command} is not in the help");
         assert!(desk.success(&[command, "--help"]).len() > 100, "{command}");

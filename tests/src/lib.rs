@@ -2,6 +2,7 @@
 
 pub mod emulated;
 pub mod rig;
+pub mod terminal;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
