@@ -71,6 +71,37 @@ impl Terminal {
         String::from_utf8_lossy(&self.pty.device().shown).into_owned()
     }
 
+    /// What stands on it now, row by row: what a program that moves the cursor about has drawn.
+    pub fn screen(&self) -> String {
+        let shown = self.shown();
+        let mut cells = vec![vec![' '; 160]; 40];
+        let (mut row, mut column) = (0, 0);
+        let mut signs = shown.chars();
+        while let Some(sign) = signs.next() {
+            match sign {
+                // ECMA-48, 5.4: CSI, parameters, and a letter; of these only CUP moves the cursor here.
+                '\u{1b}' if signs.as_str().starts_with('[') => {
+                    let rest = &signs.as_str()[1..];
+                    let end = rest.find(|c: char| ('\u{40}'..='\u{7e}').contains(&c)).unwrap_or(rest.len());
+                    if rest[end..].starts_with('H') {
+                        let mut at =
+                            rest[..end].split(';').map(|number| number.parse::<usize>().unwrap_or(1).max(1) - 1);
+                        (row, column) = (at.next().unwrap_or(0), at.next().unwrap_or(0));
+                    }
+                    signs = rest.get(end + 1..).unwrap_or_default().chars();
+                }
+                sign if sign.is_control() => {}
+                sign => {
+                    if let Some(cell) = cells.get_mut(row).and_then(|cells: &mut Vec<char>| cells.get_mut(column)) {
+                        *cell = sign;
+                    }
+                    column += 1;
+                }
+            }
+        }
+        cells.into_iter().map(|row| row.into_iter().collect::<String>() + "\n").collect()
+    }
+
     /// Waits until it has shown these words, in this order.
     ///
     /// # Panics

@@ -8,7 +8,7 @@ use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use system_tests::rig::{Rig, children, is_alive, signal};
+use system_tests::rig::{Rig, children, is_alive, signal, wait_until};
 use system_tests::terminal::Terminal;
 use system_tests::{limn, lost, quick_rig, report, short_up};
 
@@ -45,9 +45,11 @@ fn limn_top_shows_every_node_until_q() {
     let terminal = Terminal::open();
     let mut top = terminal.start(limn().arg("top").env("XDG_RUNTIME_DIR", rig.runtime.path()));
     terminal.wait_for(&["rig demo", "p50 ms", "q ends"]);
-    for node in ["camera_sim/head", "tracker_sim/head", "stripe/head", "refine/refined", "export/model"] {
-        terminal.wait_for(&[node]);
-    }
+    let nodes = ["camera_sim/head", "tracker_sim/head", "stripe/head", "refine/refined", "export/model"];
+    wait_until("every node in the table", || {
+        let screen = terminal.screen();
+        nodes.iter().all(|node| screen.lines().any(|row| row.starts_with(node)))
+    });
     assert!(top.try_wait().unwrap().is_none(), "{}", terminal.shown());
     terminal.press("q");
     assert!(top.wait().unwrap().success(), "{}", terminal.shown());

@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result};
 use formats::mesh::LoadedMesh;
 use geometry::{Camera, Comparison, MeshIndex, TimedPose, TriangleMesh};
 use nalgebra::{Isometry3, Point3};
-use report::{Aligned, Exhibits, Gate, Machine, Refined, Report, Run, Time};
+use report::{Aligned, ColourErrorReason, Exhibits, Gate, Machine, Refined, Report, Run, Time};
 use std::path::Path;
 use std::time::Instant;
 use world::{Known, Surface};
@@ -128,6 +128,8 @@ impl Bench {
         laid.mesh.vertices_m.iter_mut().for_each(|p| *p = (onto * Point3::from(*p).cast::<f64>()).cast::<f32>().into());
         match report::colour_error(&laid, &self.truth) {
             Ok(error) => report.colour = Some(error),
+            // An STL, say: whatever was painted, there is nothing to hold it against.
+            Err(ColourErrorReason::TruthWithoutColours) => {}
             Err(reason) => report.failures.push(reason.to_string()),
         }
         // What cannot be compared was told above.
