@@ -23,6 +23,38 @@ impl Emulated for Screen {
     }
 }
 
+/// A program on a terminal. Dropped, it is killed.
+pub struct Seated(Child);
+
+impl Seated {
+    /// The process.
+    pub fn pid(&self) -> u32 {
+        self.0.id()
+    }
+
+    /// Whether it runs.
+    pub fn runs(&mut self) -> bool {
+        matches!(self.0.try_wait(), Ok(None))
+    }
+
+    /// Waits until it has ended, and returns whether it was content.
+    ///
+    /// # Panics
+    /// When it does not end.
+    pub fn ends_well(&mut self) -> bool {
+        wait_until("the program ends", || !self.runs());
+        self.0.wait().is_ok_and(|status| status.success())
+    }
+}
+
+impl Drop for Seated {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// A terminal of 40 rows of 160 characters. It is nobody's controlling terminal: Ctrl-C is a signal, as
 /// [`crate::rig::signal`] sends it.
 pub struct Terminal {
@@ -52,11 +84,11 @@ impl Terminal {
     ///
     /// # Panics
     /// When it cannot be started.
-    pub fn start(&self, command: &mut Command) -> Child {
+    pub fn start(&self, command: &mut Command) -> Seated {
         let line = || self.line.try_clone().map(Stdio::from);
         let (Ok(stdin), Ok(stdout), Ok(stderr)) = (line(), line(), line()) else { panic!("the terminal is gone") };
         match command.stdin(stdin).stdout(stdout).stderr(stderr).spawn() {
-            Ok(child) => child,
+            Ok(child) => Seated(child),
             Err(error) => panic!("{command:?}: {error}"),
         }
     }

@@ -33,8 +33,8 @@ fn the_keys_of_limn_up_are_the_operators_commands() {
     terminal.press("x?");
     terminal.press("e");
     terminal.wait_for(&["scan 2: Both", "scan 2: End"]);
-    signal(up.id(), "INT");
-    assert!(up.wait().unwrap().success(), "{}", terminal.shown());
+    signal(up.pid(), "INT");
+    assert!(up.ends_well(), "{}", terminal.shown());
 }
 
 #[test]
@@ -50,9 +50,9 @@ fn limn_top_shows_every_node_until_q() {
         let screen = terminal.screen();
         nodes.iter().all(|node| screen.lines().any(|row| row.starts_with(node)))
     });
-    assert!(top.try_wait().unwrap().is_none(), "{}", terminal.shown());
+    assert!(top.runs(), "{}", terminal.shown());
     terminal.press("q");
-    assert!(top.wait().unwrap().success(), "{}", terminal.shown());
+    assert!(top.ends_well(), "{}", terminal.shown());
     signal(rig.pid(), "INT");
     let (status, said) = rig.end();
     assert!(status.success(), "{said}");
@@ -119,7 +119,7 @@ fn a_demo_with_its_page_is_judged_first_and_stays_up_on_loopback_alone() {
     let is_view = |pid: &u32| {
         std::fs::read_to_string(format!("/proc/{pid}/cmdline")).is_ok_and(|line| line.contains("\0node\0view\0"))
     };
-    let view = children(demo.id()).into_iter().find(is_view).expect("the viewer lives");
+    let view = children(demo.pid()).into_iter().find(is_view).expect("the viewer lives");
     let listening = listening(view);
     assert_eq!(listening.len(), 2, "the page and its data: {listening:?}");
     assert!(listening.iter().all(|address| address.starts_with("0100007F:")), "127.0.0.1 alone: {listening:?}");
@@ -127,8 +127,8 @@ fn a_demo_with_its_page_is_judged_first_and_stays_up_on_loopback_alone() {
     let page = shown.split("look: http://").nth(1).and_then(|rest| rest.split('/').next()).unwrap();
     assert!(ask(page).contains("200"), "{page}: {}", ask(page));
 
-    signal(demo.id(), "INT");
-    assert!(demo.wait().unwrap().success(), "{}", terminal.shown());
+    signal(demo.pid(), "INT");
+    assert!(demo.ends_well(), "{}", terminal.shown());
     assert!(!is_alive(view));
 }
 
