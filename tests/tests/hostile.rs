@@ -46,9 +46,10 @@ fn streams() -> Vec<Stream> {
     topic::all().into_iter().flat_map(on).collect()
 }
 
-/// Whether a node of a demo without a page hears it all the time, and so has something to say of it.
+/// Whether a node of a demo without a page hears it all the time, and so has something to say of it. Of models the exporter
+/// keeps the newest two, and so may never see what came before them.
 fn is_heard(key: &str) -> bool {
-    let unheard = ["rig/", "truth/", "world/refined/refinement", "world/head/refinement", "@"];
+    let unheard = ["model/textured", "rig/", "truth/", "world/refined/refinement", "world/head/refinement", "@"];
     !unheard.iter().any(|start| key.starts_with(start))
 }
 

@@ -25,14 +25,16 @@ fn the_keys_of_limn_up_are_the_operators_commands() {
     let terminal = Terminal::open();
     let mut up = terminal.start(aiming(folder.path()).env("XDG_RUNTIME_DIR", folder.path()));
     terminal.wait_for(&["keys: s shape", "export is ready"]);
-    for (key, told) in [("s", "scan 1: Shape"), ("d", "scan 2: Aim"), ("c", "scan 2: Colour"), ("B", "scan 2: Both")] {
+    for (key, told) in [("s", "scan 1: Shape"), ("c", "scan 1: Colour"), ("B", "scan 1: Both")] {
         terminal.press(key);
         terminal.wait_for(&[told]);
     }
     // A key without a meaning has none.
     terminal.press("x?");
     terminal.press("e");
-    terminal.wait_for(&["scan 2: Both", "scan 2: End"]);
+    terminal.wait_for(&["scan 1: Both", "scan 1: End"]);
+    terminal.press("d");
+    terminal.wait_for(&["scan 1: End", "scan 2: Aim"]);
     signal(up.pid(), "INT");
     assert!(up.ends_well(), "{}", terminal.shown());
 }
