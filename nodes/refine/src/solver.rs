@@ -115,12 +115,12 @@ const FEWEST_STEPS: usize = 2;
 const MOST_STEPS: usize = 8;
 
 /// Short scans are held by few crossings, and what warps them as a whole comes late in conjugate gradients; and they can pay
-/// for more of them: so many products with one point.
-const CG_POINTS: usize = 4_000_000;
-const MOST_CG_STEPS: usize = 90;
+/// for more of them: so many steps times frames.
+const CG_FRAMES: usize = 32_000;
+const MOST_CG_STEPS: usize = 180;
 
 fn cg_steps(problem: &Problem) -> usize {
-    (CG_POINTS / problem.gathered.points.max(1)).clamp(CG_STEPS, MOST_CG_STEPS)
+    (CG_FRAMES / problem.frames.len().max(1)).clamp(CG_STEPS, MOST_CG_STEPS)
 }
 
 /// The steps of one stage, from `x`. `scale_m` is the robust scale and goes on from stage to stage.
