@@ -79,10 +79,11 @@ fn ensure_colours(mesh: &mut TriangleMesh) {
 
 fn object(section: &ObjectSection, folder: &Path) -> Result<Surface, SceneError> {
     let name = section.name.clone().unwrap_or_else(|| format!("{:?}", section.kind).to_lowercase());
-    let finite = [section.at_mm[0], section.at_mm[1], section.lift_mm, section.yaw_deg].iter().all(|x| x.is_finite());
-    if !finite || section.lift_mm < 0.0 {
+    let on_table = section.at_mm.iter().chain([&section.lift_mm]).all(|place| place.abs() <= *SIZES_MM.end());
+    if !on_table || section.lift_mm < 0.0 || !(-360.0..=360.0).contains(&section.yaw_deg) {
         let place = (section.at_mm, section.lift_mm, section.yaw_deg);
-        return Err(value(&name, "at_mm, lift_mm, yaw_deg", &place, "finite numbers, and not below the table"));
+        let wanted = "within 2000 mm of the table's middle, not below it, -360 to 360 degrees";
+        return Err(value(&name, "at_mm, lift_mm, yaw_deg", &place, wanted));
     }
     if section.size_mm != 0.0 && !SIZES_MM.contains(&section.size_mm) {
         return Err(value(&name, "size_mm", &section.size_mm, "10 to 2000 mm"));
@@ -90,8 +91,8 @@ fn object(section: &ObjectSection, folder: &Path) -> Result<Surface, SceneError>
     if !section.sides_mm.iter().all(|side| SIZES_MM.contains(side)) {
         return Err(value(&name, "sides_mm", &section.sides_mm, "10 to 2000 mm along each side"));
     }
-    if !(section.pattern_mm >= 1.0 && section.pattern_mm.is_finite()) {
-        return Err(value(&name, "pattern_mm", &section.pattern_mm, "at least 1 mm"));
+    if !(1.0..=*SIZES_MM.end()).contains(&section.pattern_mm) {
+        return Err(value(&name, "pattern_mm", &section.pattern_mm, "1 to 2000 mm"));
     }
     let shine = [section.specular, section.shininess];
     if !shine.iter().all(|x| (0.0..=1000.0).contains(x)) {
