@@ -92,7 +92,8 @@ pub(crate) fn cell(place: &Vector3<f32>, size_m: f32) -> u64 {
 }
 
 fn coordinates(place: &Vector3<f32>, size_m: f32) -> [i64; 3] {
-    [place.x, place.y, place.z].map(|x| (x / size_m).floor() as i64)
+    // What a hostile scan throws far away shares the outermost cells.
+    [place.x, place.y, place.z].map(|x| ((x / size_m).floor() as i64).clamp(-MIDDLE, MIDDLE))
 }
 
 fn pack(cell: [i64; 3]) -> u64 {

@@ -58,12 +58,12 @@ impl Gathered {
             _ => {}
         }
         let sigma = |axes: [f64; 3]| {
-            let good = axes.iter().all(|sigma| sigma.is_finite() && *sigma >= 0.0);
+            let good = axes.iter().all(|sigma| (0.0..FARTHEST_M).contains(sigma));
             good.then(|| axes.into_iter().fold(0.0, f64::max))
         };
         let sigmas = sigma(pose.position_sigma_m).zip(sigma(pose.rotation_sigma_rad));
         let Some((world_from_body, (position_sigma_m, rotation_sigma_rad))) =
-            rigid_from_wire(&pose.world_from_body).zip(sigmas)
+            rigid_from_wire(&pose.world_from_body).filter(is_near).zip(sigmas)
         else {
             return self.refuse(NOT_RIGID, 1);
         };
@@ -129,8 +129,15 @@ impl Gathered {
     }
 }
 
+/// No tracker reaches so far; numbers beyond it overflow in single precision.
+const FARTHEST_M: f64 = 1e4;
+
+fn is_near(world_from_body: &nalgebra::Isometry3<f64>) -> bool {
+    world_from_body.translation.vector.amax() < FARTHEST_M
+}
+
 fn is_good(point: &ProfilePoint) -> bool {
     let finite = point.position_m.iter().all(|x| x.is_finite() && x.abs() < 100.0);
-    let sigmas = [point.range_sigma_m, point.lateral_sigma_m].iter().all(|s| s.is_finite() && *s >= 0.0);
+    let sigmas = [point.range_sigma_m, point.lateral_sigma_m].iter().all(|s| (0.0..100.0).contains(s));
     finite && sigmas && point.position_m[2] > 0.0
 }

@@ -43,7 +43,7 @@ pub(crate) fn place(gathered: &Gathered, smoothed: &Smoothed) -> Vec<Placed> {
     let start = gathered.frames.first().map_or(0, Frame::stamp_nanos);
     let placed = |(i, frame): (usize, &Frame)| {
         smoothed.at(frame.stamp_nanos())?;
-        let t_s = (frame.stamp_nanos() - start) as f64 * 1e-9;
+        let t_s = frame.stamp_nanos().saturating_sub(start) as f64 * 1e-9;
         Some(Placed { frame: i, stamp_nanos: frame.stamp_nanos(), t_s })
     };
     gathered.frames.iter().enumerate().filter_map(placed).collect()
@@ -72,7 +72,8 @@ pub(crate) fn problem<'a>(
 /// What is believed of the unknowns.
 pub(crate) fn prior(config: &Config, noise: &Noise, problem: &Problem) -> Prior {
     let span = 0.0..=problem.frames.last().map_or(0.0, |frame| frame.t_s);
-    let times = problem.gathered.readings.iter().map(|r| (r.stamp_nanos - problem.start_nanos()) as f64 * 1e-9);
+    let times =
+        problem.gathered.readings.iter().map(|r| r.stamp_nanos.saturating_sub(problem.start_nanos()) as f64 * 1e-9);
     let times: Vec<f64> = times.filter(|t| span.contains(t)).collect();
     let white = problem.smoothed.white().map(|sigma| sigma.max(LEAST_WHITE));
     let stiffness = problem.smoothed.stiffness(config.noise_knot_ms * 1e-3);
