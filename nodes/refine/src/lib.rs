@@ -15,8 +15,9 @@
 //! weights). The quadrics' own parameters are eliminated exactly (`schur`), or what was scanned first would hold its
 //! errors fast; this is bundle adjustment with surface patches for landmarks (Triggs et al. 2000; for planes Liu and
 //! Zhang 2021, "BALM"). The system is never formed: conjugate gradients multiply by it surfel by surfel (`pcg`,
-//! `precondition`). Where the thing stands on a flat table, all strokes that saw it agree by it (`table`). The schedule goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all
-//! readings in the prior (`prior`). In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`):
+//! `precondition`). Where the thing stands on a flat table, all strokes that saw it agree by it (`table`). The schedule
+//! goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all readings in the prior (`prior`).
+//! In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`):
 //! where the scan lies in the world no surface tells.
 //!
 //! # Guards
