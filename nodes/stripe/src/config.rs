@@ -27,6 +27,9 @@ pub struct Config {
     pub lateral_lines: usize,
     /// A neighbour along the stripe lies at most so far aside in the next row or column.
     pub link_px: f32,
+    /// Of the four rows or columns on either side of a peak at least so many hold the line, too; 0 asks for none. Grains of
+    /// noise and texture stand alone.
+    pub min_support_lines: usize,
     /// Contrast of the speckle, for a stripe too short to tell it from its own scatter.
     pub speckle_contrast: f32,
 }
@@ -35,7 +38,7 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             min_amplitude: 12.0,
-            min_noise_ratio: 5.0,
+            min_noise_ratio: 4.0,
             noise_floor: 0.5,
             min_width_px: 0.4,
             max_width_px: 16.0,
@@ -44,6 +47,7 @@ impl Default for Config {
             tie_fraction: 0.05,
             lateral_lines: 3,
             link_px: 3.0,
+            min_support_lines: 4,
             speckle_contrast: 0.1,
         }
     }
@@ -88,6 +92,8 @@ impl Config {
         wanted((1..=64).contains(&peaks), "max_peaks_per_line", peaks as f64, "1 to 64")?;
         let lines = self.lateral_lines;
         wanted(lines <= 16, "lateral_lines", lines as f64, "0 to 16 rows or columns")?;
+        let support = self.min_support_lines;
+        wanted(support <= 8, "min_support_lines", support as f64, "0 to 8 rows or columns")?;
         let level = self.saturation_level;
         wanted(level >= 32, "saturation_level", f64::from(level), "32 to 255")
     }

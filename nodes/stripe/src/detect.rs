@@ -6,7 +6,7 @@ use crate::measure::{Peak, measure};
 use crate::refusal::{Reason, Refusals};
 use crate::search::{Run, Search};
 use crate::window::Window;
-use crate::{Config, ConfigError, noise};
+use crate::{Config, ConfigError, noise, support};
 use wire::{Frame, FrameError, LaserPlane, PeaksPer, Stripe, StripePeak};
 
 /// Around a stretch that stands out; enough for lines up to about 2 px wide, wider ones are read again.
@@ -25,6 +25,7 @@ pub struct StripeDetector {
     row: Vec<u8>,
     window: Window,
     peaks: Vec<LinePeak>,
+    support: Vec<u8>,
     lateral: Lateral,
 }
 
@@ -42,6 +43,7 @@ impl StripeDetector {
             row: Vec::new(),
             window: Window::default(),
             peaks: Vec::new(),
+            support: Vec::new(),
             lateral: Lateral::default(),
             config,
         })
@@ -57,6 +59,8 @@ impl StripeDetector {
         if frame.light.laser {
             frame.check()?;
             self.find(frame, &mut refusals);
+            self.refuse_the_lonely(&mut refusals);
+            self.mark_the_best();
             let Config { lateral_lines: lines, link_px, speckle_contrast: contrast, .. } = self.config;
             self.lateral.average(&mut self.peaks, Averaging { lines, link_px, contrast });
             // Averages of neighbours that are hardly apart may have changed places.
@@ -93,7 +97,7 @@ impl StripeDetector {
         }
     }
 
-    /// The peaks of one line, the best of them marked.
+    /// The peaks of one line.
     fn line(&mut self, frame: &Frame, runs: std::ops::Range<usize>, sigma: f32, refusals: &mut Refusals) {
         let start = self.peaks.len();
         // What stands out beside a clipped core, or in a ragged flank, belongs to the peak before it.
@@ -119,17 +123,35 @@ impl StripeDetector {
             self.peaks.remove(smallest);
             refusals.count(Reason::Crowded);
         }
-        let peaks = &mut self.peaks[start..];
-        let Some(LinePeak { peak: largest, .. }) =
-            peaks.iter().copied().max_by(|a, b| a.peak.amplitude.total_cmp(&b.peak.amplitude))
-        else {
-            return;
-        };
-        let enough = (1.0 - self.config.tie_fraction) * largest.amplitude;
-        // How high a clipped peak really is, nobody knows.
-        let ties = |peak: &Peak| peak.amplitude >= enough || (peak.clipped && largest.clipped);
-        if let Some(best) = peaks.iter_mut().find(|p| ties(&p.peak)) {
-            best.best = true;
+    }
+
+    /// Leaves out what no line goes on from.
+    fn refuse_the_lonely(&mut self, refusals: &mut Refusals) {
+        support::count(&self.peaks, self.config.link_px, &mut self.support);
+        let mut support = self.support.iter();
+        self.peaks.retain(|_| {
+            let holds = support.next().is_some_and(|lines| usize::from(*lines) >= self.config.min_support_lines);
+            if !holds {
+                refusals.count(Reason::Alone);
+            }
+            holds
+        });
+    }
+
+    /// The largest of each line is its best.
+    fn mark_the_best(&mut self) {
+        for peaks in self.peaks.chunk_by_mut(|a, b| a.line == b.line) {
+            let Some(Peak { amplitude, clipped, .. }) =
+                peaks.iter().map(|p| p.peak).max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
+            else {
+                continue;
+            };
+            let enough = (1.0 - self.config.tie_fraction) * amplitude;
+            // How high a clipped peak really is, nobody knows.
+            let ties = |peak: &Peak| peak.amplitude >= enough || (peak.clipped && clipped);
+            if let Some(best) = peaks.iter_mut().find(|p| ties(&p.peak)) {
+                best.best = true;
+            }
         }
     }
 

@@ -13,11 +13,13 @@
 //! 4. `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian fitted
 //!    (`gaussian`: Baker and Moallem 2007); of a clipped one the middle between its `flanks` is taken. What is too wide, too
 //!    narrow or too faint is refused and counted.
-//! 5. The best is the peak with the largest amplitude; of a tie (all clipped ones tie), the first from the left (from the
+//! 5. `support`: where the line is not seen, grains of noise and texture still stand out. No line goes on from them to the
+//!    rows (or columns) around: they are refused and counted.
+//! 6. The best is the peak with the largest amplitude; of a tie (all clipped ones tie), the first from the left (from the
 //!    top).
-//! 6. `lateral`: positions that follow one another in neighbouring lines are averaged by a short straight fit, unless they
+//! 7. `lateral`: positions that follow one another in neighbouring lines are averaged by a short straight fit, unless they
 //!    depart from it by more than noise: corners and steps of the surface stay.
-//! 7. `scatter`: what scatter along the stripe the pixels' noise does not explain is speckle, and goes into the sigma.
+//! 8. `scatter`: what scatter along the stripe the pixels' noise does not explain is speckle, and goes into the sigma.
 //!
 //! Limits: two lines closer than about four of their widths are one. Every bump of the background that looks like a line
 //! costs as much time as a line, about 0.4 microseconds; weights that cancel white light spare that. The sigma knows noise and speckle, but not a bias
@@ -63,6 +65,7 @@ mod noise;
 mod refusal;
 mod scatter;
 mod search;
+mod support;
 mod window;
 
 pub use config::{Config, ConfigError};

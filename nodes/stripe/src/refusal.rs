@@ -17,15 +17,18 @@ pub(crate) enum Reason {
     Shapeless,
     /// More peaks in the line than may be kept.
     Crowded,
+    /// Too few of the lines around it hold the line, too.
+    Alone,
 }
 
-const ALL: [(Reason, &str); 6] = [
+const ALL: [(Reason, &str); 7] = [
     (Reason::Edge, "peak at the edge of the picture"),
     (Reason::Wide, "peak wider than a laser line"),
     (Reason::Narrow, "peak narrower than a laser line"),
     (Reason::Faint, "peak too faint above its background"),
     (Reason::Shapeless, "peak without the shape of a line"),
     (Reason::Crowded, "more peaks in a line than are kept"),
+    (Reason::Alone, "peak that no line goes on from"),
 ];
 
 /// Counts since the frame began.

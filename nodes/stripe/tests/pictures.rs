@@ -186,12 +186,50 @@ fn steps_and_corners_along_the_stripe_are_not_smeared() {
 
 #[test]
 fn crowded_rows_keep_the_largest_and_count_the_rest() {
-    let stripe = detect(&rows(640, 4, |u| {
+    let stripe = detect(&rows(640, 6, |u| {
         10.0 + (0..12).map(|i| line(u, 30.0 + 50.0 * f64::from(i), 1.5, 50.0 + 10.0 * f64::from(i))).sum::<f64>()
     }));
-    assert_eq!(stripe.peaks.len(), 4 * 8);
+    assert_eq!(stripe.peaks.len(), 6 * 8);
     assert!(stripe.peaks.iter().all(|p| p.u_px > 200.0));
-    assert_eq!((reasons(&stripe), stripe.refused[0].count), (vec!["more peaks in a line than are kept"], 16));
+    assert_eq!((reasons(&stripe), stripe.refused[0].count), (vec!["more peaks in a line than are kept"], 24));
+}
+
+/// A stripe in the upper half alone, and in every row a grain that is brighter, each at a place of its own.
+fn grainy() -> Frame {
+    let mut random = picture::Random(3);
+    let data = (0..80).flat_map(|v| {
+        let grain = 150.0 + 140.0 * random.uniform();
+        let stripe = if v < 40 { 90.0 } else { 0.0 };
+        (0..300).map(move |u| {
+            let u = f64::from(u);
+            (10.0 + line(u, 60.0 + 0.8 * f64::from(v), 1.5, stripe) + line(u, grain, 1.0, 120.0)).round() as u8
+        })
+    });
+    frame(300, 80, PixelFormat::Grey8, data.collect())
+}
+
+#[test]
+fn a_grain_that_no_line_goes_on_from_is_no_peak_however_bright() {
+    let stripe = detect(&grainy());
+    assert_eq!(stripe.peaks.len(), 40, "{:?}", stripe.refused);
+    for (v, peak) in stripe.peaks.iter().enumerate() {
+        assert!(peak.is_best() && (f64::from(peak.u_px) - 60.0 - 0.8 * v as f64).abs() < 0.05, "row {v}: {peak:?}");
+    }
+    assert_eq!((reasons(&stripe), stripe.refused[0].count), (vec!["peak that no line goes on from"], 80));
+    let config = Config { min_support_lines: 0, ..Config::default() };
+    let all = StripeDetector::new(config, &red_laser(PeaksPer::Row)).unwrap().process(&grainy()).unwrap();
+    assert_eq!((all.peaks.len(), all.refused.len()), (120, 0), "asked for none, each grain is a peak");
+}
+
+#[test]
+fn a_line_with_gaps_and_a_short_line_stay() {
+    // Every third row dark, which costs two peaks at either end; and five rows of a line alone.
+    let lit = |v: usize| (v < 60 && !v.is_multiple_of(3)) || (70..75).contains(&v);
+    let data = (0..90).flat_map(|v| {
+        (0..200).map(move |u| (10.0 + if lit(v) { line(f64::from(u), 90.3, 1.8, 120.0) } else { 0.0 }).round() as u8)
+    });
+    let stripe = detect(&frame(200, 90, PixelFormat::Grey8, data.collect()));
+    assert_eq!(stripe.peaks.len(), 36 + 5, "{:?}", stripe.refused);
 }
 
 #[test]
