@@ -37,7 +37,7 @@ layout! {
 message!(Scan @ 1);
 
 impl Scan {
-    /// No points: what goes behind the last picture.
+    /// No points: of a picture without a pose, and behind the last one.
     pub fn none(header: Header) -> Self {
         Self {
             header,

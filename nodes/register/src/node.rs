@@ -54,7 +54,9 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
 }
 
 fn send(node: &mut Node, register: &mut Register, scans: &mut Output<Scan>) -> anyhow::Result<()> {
-    for scan in register.drain() {
+    let mut ready: Vec<Scan> = register.drain().collect();
+    ready.extend(register.without_pose());
+    for scan in ready {
         let header = scan.header;
         scan.refused.iter().for_each(|refusal| node.refuse(&refusal.reason, refusal.count));
         scans.send(scan)?;

@@ -39,6 +39,8 @@ pub struct Register {
     next: Option<(Header, Readings)>,
     waiting: VecDeque<Profile>,
     registered: VecDeque<Scan>,
+    /// The last profile that got no pose, when nothing was registered behind it.
+    passed_over: Option<Header>,
     /// What is left to tell of scans before this one.
     older_ways: VecDeque<Trajectory>,
     refused: BTreeMap<&'static str, u64>,
@@ -70,6 +72,7 @@ impl Register {
             next: None,
             waiting: VecDeque::new(),
             registered: VecDeque::new(),
+            passed_over: None,
             older_ways: VecDeque::new(),
             refused: BTreeMap::new(),
         })
@@ -131,14 +134,20 @@ impl Register {
         self.waiting.push_back(profile);
         self.serve();
         if self.waiting.len() > self.config.most_waiting {
-            self.waiting.pop_front();
-            self.refuse(TOO_MANY, 1);
+            self.pass_over(TOO_MANY);
         }
     }
 
     /// The scans that are ready, in the order of their stamps.
     pub fn drain(&mut self) -> impl Iterator<Item = Scan> + '_ {
         self.registered.drain(..)
+    }
+
+    /// A scan without points that says what was refused, when profiles got no pose and none behind them did: whoever waits
+    /// for the scans goes on without them. Call it when [`Register::drain`] has given all.
+    pub fn without_pose(&mut self) -> Option<Scan> {
+        let header = self.passed_over.take()?;
+        Some(Scan { refused: self.take_refused(), ..Scan::none(header.derived()) })
     }
 
     /// Where the camera was at the readings since the last call, as far as that is known by now; `None` when there was
@@ -199,24 +208,23 @@ impl Register {
                     let Some(profile) = self.waiting.pop_front() else { return };
                     self.place(&profile, &body);
                 }
-                Err(NoPose::After) if self.is_far_ahead(stamp_nanos) => {
-                    self.waiting.pop_front();
-                    self.refuse(FAR_AHEAD, 1);
-                }
+                Err(NoPose::After) if self.is_far_ahead(stamp_nanos) => self.pass_over(FAR_AHEAD),
                 Err(NoPose::After) => {
                     let newest = self.waiting.back().map_or(stamp_nanos, |last| last.header.stamp_nanos);
                     if newest.saturating_sub(stamp_nanos) <= self.config.most_wait_nanos() {
                         return;
                     }
-                    self.waiting.pop_front();
-                    self.refuse(TIMED_OUT, 1);
+                    self.pass_over(TIMED_OUT);
                 }
-                Err(never) => {
-                    self.waiting.pop_front();
-                    self.refuse(unplaced(never), 1);
-                }
+                Err(never) => self.pass_over(unplaced(never)),
             }
         }
+    }
+
+    /// The profile that has waited longest gets no pose.
+    fn pass_over(&mut self, reason: &'static str) {
+        self.passed_over = self.waiting.pop_front().map(|profile| profile.header);
+        self.refuse(reason, 1);
     }
 
     fn is_far_ahead(&self, stamp_nanos: i64) -> bool {
@@ -230,6 +238,7 @@ impl Register {
         points.extend(profile.points.iter().filter_map(|point| place.of(point)));
         self.refuse(NOT_FINITE, (profile.points.len() - points.len()) as u64);
         let refused = self.take_refused();
+        self.passed_over = None;
         self.registered.push_back(Scan {
             header: profile.header.derived(),
             world_from_camera: rigid_to_wire(&world_from_camera),

@@ -157,11 +157,13 @@ fn a_silent_tracker_is_waited_for_only_so_long() {
     for i in 1..=30 {
         register.profile(profile(i * 10 * MS));
     }
-    let refused = register.finish();
-    assert_eq!(
-        reasons(&refused),
-        [("profile after the last pose", 11), ("profile without a pose behind it in time", 19)]
-    );
+    // Whoever waits for the scans hears how far it has come.
+    assert_eq!(register.drain().count(), 0);
+    let none = register.without_pose().unwrap();
+    assert_eq!((none.header.stamp_nanos, none.points.len()), (190 * MS, 0));
+    assert_eq!(reasons(&none.refused), [("profile without a pose behind it in time", 19)]);
+    assert_eq!(register.without_pose(), None);
+    assert_eq!(reasons(&register.finish()), [("profile after the last pose", 11)]);
 }
 
 #[test]

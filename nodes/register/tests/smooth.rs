@@ -51,9 +51,13 @@ fn noise(seed: u64) -> impl FnMut() -> f64 {
 
 /// White, 1.5 mm and 3 degrees as lengths of vectors, at 100 Hz; `lag_nanos` is the age of the rotation.
 fn poses(seconds: i64, seed: u64, lag_nanos: i64) -> Vec<Pose> {
+    noisy(seconds, seed, lag_nanos, [1.5e-3 / 3f64.sqrt(), 3f64.to_radians() / 3f64.sqrt()])
+}
+
+/// White noise of this size on each axis, in metres and radians.
+fn noisy(seconds: i64, seed: u64, lag_nanos: i64, [position, rotation]: [f64; 2]) -> Vec<Pose> {
     let mut noise = noise(seed);
     let mut vector = |size: f64| Vector3::new(noise(), noise(), noise()) * size;
-    let (position, rotation) = (1.5e-3 / 3f64.sqrt(), 3f64.to_radians() / 3f64.sqrt());
     let pose = |i: i64| {
         let stamp = i * 10 * MS;
         let place = world_from_body(stamp).translation.vector + vector(position);
@@ -135,6 +139,20 @@ fn the_live_picture_is_steadier_than_the_tracker() {
         assert!(found.0 < 0.97 * before.0 && found.1 < 0.97 * before.1);
         assert!(name == "straight" || way.0 < 0.6 && way.1 < 1.0);
         before = found;
+    }
+}
+
+#[test]
+fn a_tracker_that_errs_by_nothing_is_taken_at_its_word() {
+    for noise in [0.0, 1e-9, 1e-7, 1e-6, 1e-5, 2e-5, 5e-5, 1e-4] {
+        let (scans, way) = register(Config::default(), &noisy(10, 7, 0, [noise; 2]), &profiles(10));
+        assert_eq!((scans.len(), way.len()), (540, 1000), "of noise {noise} every profile has its pose");
+        let (position_mm, rotation_deg) = rms(scans.iter().map(|(stamp, pose, ..)| (*stamp, pose)));
+        println!("{noise}: {position_mm:.5} mm, {rotation_deg:.6} degrees");
+        assert!(
+            position_mm < 0.02 + 2e3 * noise && rotation_deg < 0.01 + 100.0 * noise,
+            "{position_mm}, {rotation_deg}"
+        );
     }
 }
 
