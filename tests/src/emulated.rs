@@ -15,6 +15,10 @@ pub struct Tracker {
     pub found: &'static str,
     /// The kind of the driver's node.
     pub kind: &'static str,
+    /// Its instance: `head`, when it alone tells the pose.
+    pub instance: &'static str,
+    /// Further tables of the launch file.
+    pub beside: &'static str,
     /// The rest of the driver's table in the launch file.
     pub config: &'static str,
     /// How long the hand sweeps.
@@ -47,11 +51,13 @@ impl Emulated {
         let (launch, port) = (out.join("emulated.toml"), out.join("port"));
         let text = format!(
             "include = {:?}\n[run]\nbegin = 'aim'\n[nodes.tracker]\nenabled = false\n\
-             [nodes.emulated]\nkind = '{}'\ninstance = 'head'\n[nodes.emulated.config]\nport = {port:?}\n\
-             scan_clock = true\nposition_sigma_mm = 0.029\nrotation_sigma_deg = 0.0115\n{}\n",
+             [nodes.emulated]\nkind = '{}'\ninstance = '{}'\n[nodes.emulated.config]\nport = {port:?}\n\
+             scan_clock = true\nposition_sigma_mm = 0.029\nrotation_sigma_deg = 0.0115\n{}\n{}\n",
             repository("launch/demo.toml"),
             tracker.kind,
+            tracker.instance,
             tracker.config,
+            tracker.beside,
         );
         assert!(
             std::fs::create_dir_all(out).and_then(|()| std::fs::write(&launch, text)).is_ok(),
