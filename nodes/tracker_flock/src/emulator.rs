@@ -3,10 +3,14 @@
 //!
 //! It does what the manual says: it needs an auto-configuration when it has an address, hears nothing while it carries
 //! that out, answers for all units in group mode, lowest address first, and mirrors positions into the hemisphere that it
-//! was told. A record leaves at the end of its cycle; position and orientation in it are older, by different times.
+//! was told. A record leaves at the end of its cycle; position and orientation in it are older, by different times. Every
+//! parameter is told and can be changed; those that its module `kept` lists have no effect, nor has a beat that the host gives (SYNC).
 
 mod answers;
 mod commands;
+mod fault;
+mod kept;
+mod metal;
 mod mood;
 mod power;
 mod unit;
@@ -15,6 +19,7 @@ use crate::protocol::address::Addressing;
 use crate::protocol::reading::QuaternionSense;
 use crate::protocol::records::{MOST_WORDS, encode};
 use commands::next_command;
+use fault::Fault;
 pub use mood::{Mood, TestMode};
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{Emulated, Speech};
@@ -43,6 +48,8 @@ pub struct EmulatorConfig {
     pub filters: bool,
     /// What the measure of metal says.
     pub metal: u8,
+    /// What the byte of the button says: 0x00 none, 0x10 left, 0x30 middle, 0x70 right.
+    pub button: u8,
     /// It changes its mind so often about the half of space that its sensors are in; 0 is never.
     pub flip_every_nanos: i64,
     /// The error that it reports when it is asked first.
@@ -62,6 +69,7 @@ impl Default for EmulatorConfig {
             rotation_latency_nanos: 2_000_000,
             filters: false,
             metal: 3,
+            button: 0,
             flip_every_nanos: 0,
             error: 0,
         }
@@ -100,7 +108,8 @@ pub struct FlockEmulator {
     standby: bool,
     report_every: u64,
     rate_hz: f64,
-    error: u8,
+    fault: Fault,
+    sync: u8,
     cycle: u64,
     cycle_nanos: i64,
     speech: Speech,
@@ -119,7 +128,7 @@ impl FlockEmulator {
             units: addresses.map(Unit::new).collect(),
             configured: config.units == 0,
             rate_hz: config.rate_hz,
-            error: config.error,
+            fault: Fault::new(config.error),
             speech: Speech::new(config.baud),
             config,
             world,
@@ -131,6 +140,7 @@ impl FlockEmulator {
             held: false,
             standby: false,
             report_every: 1,
+            sync: 0,
             cycle: 0,
             cycle_nanos: i64::MIN,
             counted: 0,

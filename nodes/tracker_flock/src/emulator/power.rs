@@ -1,6 +1,7 @@
-//! Standby and reset by the line RTS.
+//! Standby and reset by the line RTS, and of the slaves by their master.
 
 use super::FlockEmulator;
+use super::fault::Fault;
 use super::unit::Unit;
 
 /// From the moment that RTS falls until a unit hears.
@@ -18,8 +19,16 @@ impl FlockEmulator {
         self.configured = self.config.units == 0;
         self.rate_hz = self.config.rate_hz;
         (self.group, self.streaming, self.held) = (false, false, false);
-        (self.report_every, self.error) = (1, 0);
+        (self.report_every, self.sync, self.fault) = (1, 0, Fault::new(0));
         self.heard.clear();
         self.busy_until = now_nanos + START_UP_NANOS;
+    }
+
+    /// FBB RESET: all but the master start up as if they had been switched on, and the flock wants to be configured anew.
+    pub(super) fn restart_slaves(&mut self, now_nanos: i64) {
+        self.units.iter_mut().skip(1).for_each(|unit| *unit = Unit::new(unit.address));
+        self.configured &= self.units.len() == 1;
+        self.streaming &= self.configured;
+        self.busy_until = now_nanos + super::CONFIGURING_NANOS;
     }
 }

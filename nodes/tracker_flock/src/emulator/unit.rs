@@ -1,8 +1,10 @@
 //! One bird of the flock: its settings, and what it measures.
 
 use super::EmulatorConfig;
+use super::kept::Kept;
+use super::metal::Metal;
 use crate::protocol::reading::{Scale, words_of};
-use crate::protocol::records::{Format, Layout, Record};
+use crate::protocol::records::{Format, Layout, MOST_WORDS, Record};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// As it is after power-up.
@@ -15,7 +17,12 @@ pub(super) struct Unit {
     pub asleep: bool,
     scale: Scale,
     button: bool,
-    metal: bool,
+    metal: Metal,
+    /// Metres, in the sensor's frame: what is reported instead of the sensor's own middle.
+    offset_m: Vector3<f64>,
+    /// Turns the sensor's frame, so that what was boresighted reads as no turn.
+    boresight: UnitQuaternion<f64>,
+    kept: Kept,
     alpha_min: [u16; 7],
     motion: [u16; 7],
     alpha_max: [u16; 7],
@@ -37,7 +44,10 @@ impl Unit {
             asleep: false,
             scale: Scale::Inches36,
             button: false,
-            metal: false,
+            metal: Metal::OFF,
+            offset_m: Vector3::zeros(),
+            boresight: UnitQuaternion::identity(),
+            kept: Kept::new(),
             alpha_min: [0x028F; 7],
             motion: [2, 4, 8, 32, 64, 256, 512],
             alpha_max: [0x7333; 7],
@@ -57,7 +67,15 @@ impl Unit {
             (b'G', _) => self.asleep = true,
             (b'L', &[axis, sign]) | (b'P', &[22, axis, sign]) => self.hemisphere = [axis, sign],
             (b'M', &[on]) => self.button = on != 0,
-            (b's', &[flag, _]) => self.metal = flag != 0,
+            (b's', &[flag, data]) => self.metal.command(flag, data)?,
+            (b'P', [28, words @ ..]) => self.metal.change(words),
+            (b'K', words) => self.offset_m = offset(words, self.scale),
+            (b'u', _) => self.boresight = self.measured.map_or_else(UnitQuaternion::identity, |(_, at)| at.inverse()),
+            (b'v', _) => self.boresight = UnitQuaternion::identity(),
+            (b'q', angles) => self.kept.set(23, angles)?,
+            (b'r', angles) => self.kept.set(24, angles)?,
+            // Sines and cosines instead of angles, and the transmitter of another unit: heard, and not played.
+            (b'J' | b'H' | b'0', _) => {}
             (b'P', &[3, scale, 0]) => self.scale = if scale == 0 { Scale::Inches36 } else { Scale::Inches72 },
             (b'P', &[4, low, high]) => self.filters_off = u16::from_le_bytes([low, high]),
             (b'P', &[14, lock]) => self.lock = lock,
@@ -70,6 +88,7 @@ impl Unit {
                     _ => self.alpha_max = table,
                 }
             }
+            (b'P', [parameter, value @ ..]) => self.kept.set(*parameter, value)?,
             _ => return Err(()),
         }
         Ok(false)
@@ -87,7 +106,10 @@ impl Unit {
             20 => vec![self.mains_hz],
             21 => vec![self.address],
             22 => self.hemisphere.to_vec(),
-            _ => Vec::new(),
+            // The serial numbers of the unit, its sensor and its transmitter.
+            25..=27 => (u16::from(parameter) * 100 + u16::from(self.address)).to_le_bytes().to_vec(),
+            28 => self.metal.bytes(),
+            other => self.kept.get(other),
         }
     }
 
@@ -120,17 +142,22 @@ impl Unit {
 
     /// What it sends; `flipped` as if it were in the other half of space.
     pub fn record(&self, config: &EmulatorConfig, group: bool, flipped: bool) -> (Record, Layout) {
-        let layout = Layout { format: self.format, button: self.button, metal: self.metal, group };
-        let Some((position, rotation)) = self.measured else {
-            return (
-                Record { format: self.format, words: [0; 12], button: 0, metal: 0, address: self.address },
-                layout,
-            );
-        };
-        let position = reported(self.hemisphere, position) * if flipped { -1.0 } else { 1.0 };
-        let record = words_of(self.format, self.scale, config.quaternion, &position, &rotation);
-        (Record { metal: config.metal, address: self.address, ..record }, layout)
+        let layout = Layout { format: self.format, button: self.button, metal: self.metal.is_on(), group };
+        let empty = Record { format: self.format, words: [0; MOST_WORDS], button: 0, metal: 0, address: 0 };
+        let measured = self.measured.map(|(position, rotation)| {
+            let position = position + rotation * self.offset_m;
+            let position = reported(self.hemisphere, position) * if flipped { -1.0 } else { 1.0 };
+            words_of(self.format, self.scale, config.quaternion, &position, &(rotation * self.boresight))
+        });
+        let record = measured.unwrap_or(empty);
+        (Record { button: config.button, metal: config.metal, address: self.address, ..record }, layout)
     }
+}
+
+/// Three words in the scaling of positions.
+fn offset(words: &[u8], scale: Scale) -> Vector3<f64> {
+    let word = |k: usize| words.get(2 * k..2 * k + 2).map_or(0, |two| i16::from_le_bytes([two[0], two[1]]));
+    Vector3::from_fn(|k, _| f64::from(word(k)) * scale.full_m() / 32768.0)
 }
 
 /// The position as a bird gives it that was told a half of space: axis and sign, as the manual has them. The driver has a
