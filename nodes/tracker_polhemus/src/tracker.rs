@@ -1,7 +1,7 @@
 //! Records to poses, each with its stamp and what is known of its error.
 
 use crate::config::{Config, DataSheet};
-use crate::protocol::errors::sentence;
+use crate::protocol::errors::{is_well, sentence};
 use crate::protocol::records::{Layout, Record};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serial_line::{
@@ -97,8 +97,9 @@ impl PolhemusTracker {
             growth *= f64::from(distortion) / f64::from(self.config.most_distortion);
             reasons.push(format!("the field is bent (level {distortion}): metal is near"));
         }
-        if record.error != b' ' {
-            let letter = char::from(record.error);
+        if !is_well(self.config.family, record.error) {
+            // As ASCII has it: `u`, `\x08`.
+            let letter = record.error.escape_ascii();
             let why = sentence(self.config.family, record.error).unwrap_or("see the errors in its manual");
             reasons.push(format!("station {} reports `{letter}`: {why}", record.station));
         }

@@ -11,6 +11,7 @@ use serial_line::{FaultsConfig, SensorPose};
 use tracker_polhemus::emulator::{EmulatorConfig, PolhemusEmulator, World};
 use tracker_polhemus::protocol::commands::{settings, stream};
 use tracker_polhemus::protocol::decoder::Decoder;
+use tracker_polhemus::protocol::errors::{is_well, sentence};
 use tracker_polhemus::protocol::records::{Family, Layout};
 use tracker_polhemus::{Config, PolhemusTracker};
 use wire::Quality;
@@ -77,16 +78,47 @@ fn sigma_and_quality_say_what_distance_distortion_and_the_device_do() {
     let bent = at(0.5, |emulator| emulator.distortion = -300);
     assert!(bent.quality == Quality::Degraded && bent.reason.contains("level 300"));
     assert!((bent.rotation_sigma_rad[0] - 3.0 * 0.15f64.to_radians()).abs() < 1e-9);
-    let ill = at(0.5, |emulator| emulator.error = b'u');
-    assert!(ill.quality == Quality::Degraded && ill.reason.contains("reports `u`: see the errors in its manual"));
-    for (letter, why) in
-        [(b'j', "saturated: the receiver is too near"), (b'k', "too far from the source"), (b'l', "no signal")]
-    {
-        let config = config(Family::Fastrak, &[1]);
-        let emulator = EmulatorConfig { error: letter, ..EmulatorConfig::of(Family::Fastrak) };
+    let well = at(0.5, |emulator| emulator.error = 0);
+    assert_eq!(well.quality, Quality::Good, "binary records may say so with a zero");
+}
+
+#[test]
+fn what_a_station_reports_is_a_sentence() {
+    use Family::{Fastrak, Liberty, Patriot};
+    for (family, error, why) in [
+        (Fastrak, b'j', "reports `j`: the signal is saturated: the receiver is too near"),
+        (Fastrak, b'k', "reports `k`: the signal is low: the receiver is too far from the source"),
+        (Fastrak, b'l', "reports `l`: there is no signal"),
+        (Fastrak, b'z', "reports `z`: see the errors in its manual"),
+        (Liberty, b'c', "reports `c`: coils of the source fail: switch off, plug the source in firmly"),
+        (Patriot, b'C', "reports `C`: coils of the source fail, and its own test has found errors"),
+        (Liberty, b'I', "reports `I`: its own test has found errors"),
+        (Patriot, b'u', "reports `u`: the sensor is outside of the part of the room"),
+        (Liberty, 0x08, r"reports `\x08`: its sensors' processors do not answer"),
+        (Patriot, 0x12, r"reports `\x12`: the source's own calibration cannot be read"),
+        (Liberty, 0xFF, r"reports `\xff`: see the errors in its manual"),
+    ] {
+        let emulator = EmulatorConfig { error, ..EmulatorConfig::of(family) };
         let world = |_| Vector3::new(0.1, 0.0, 0.0);
-        let ill = played(&config, emulator, FaultsConfig::default(), 2, world).pop().unwrap().pose;
-        assert!(ill.quality == Quality::Degraded && ill.reason.contains(why), "{}", ill.reason);
+        let ill = played(&config(family, &[1]), emulator, FaultsConfig::default(), 2, world).pop().unwrap().pose;
+        assert!(ill.quality == Quality::Degraded && ill.reason.contains(why), "{family:?} {error:#x}: {}", ill.reason);
+    }
+}
+
+#[test]
+fn every_error_of_the_tables_says_what_to_do() {
+    let known = |family| (0..=255).filter(move |error| sentence(family, *error).is_some()).collect::<Vec<u8>>();
+    assert_eq!(known(Family::Fastrak), b"abcdefgjklmtuvwxy");
+    let codes: Vec<u8> = (0x01..=0x18).chain(*b"ABCDEFGI").chain(*b"abcdefgu").collect();
+    for family in [Family::Liberty, Family::Patriot] {
+        assert_eq!(known(family), codes);
+        assert!(is_well(family, 0) && is_well(family, b' ') && !is_well(family, b'a'));
+    }
+    assert!(!is_well(Family::Fastrak, 0));
+    for family in [Family::Fastrak, Family::Liberty] {
+        for error in known(family) {
+            assert!(sentence(family, error).unwrap().contains(": "), "what has happened: what to do");
+        }
     }
 }
 
