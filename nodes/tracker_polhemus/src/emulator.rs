@@ -2,11 +2,13 @@
 //! No port and no clock of its own; `serial_line::Pty` puts it behind a pseudo-terminal.
 
 mod commands;
+mod settings;
 
-use crate::protocol::records::{Family, Item, Layout, Record, encode};
+use crate::protocol::records::{Family, Record, encode};
 use commands::next_command;
 use nalgebra::{UnitQuaternion, Vector3};
 use serial_line::{Emulated, Speech};
+use settings::Settings;
 
 const INCH_M: f64 = 0.0254;
 const CENTIMETRE_M: f64 = 0.01;
@@ -66,19 +68,18 @@ pub enum Mood {
     WrongBaud,
 }
 
+/// From a Ctrl-Y until it hears again.
+const START_UP_NANOS: i64 = 10_000_000_000;
+
 /// A Polhemus.
 pub struct PolhemusEmulator {
     config: EmulatorConfig,
     world: World,
     mood: Mood,
     heard: Vec<u8>,
-    layouts: Vec<Layout>,
-    active: Vec<bool>,
-    /// Of each station; none: it follows by itself.
-    hemispheres: Vec<Vector3<f64>>,
-    binary: bool,
-    centimetres: bool,
-    continuous: bool,
+    set: Settings,
+    /// It starts up, and hears nothing.
+    busy_until: i64,
     frame: u32,
     frame_nanos: i64,
     clock_zero_nanos: i64,
@@ -88,20 +89,14 @@ pub struct PolhemusEmulator {
 impl PolhemusEmulator {
     /// A device that has just been switched on.
     pub fn new(config: EmulatorConfig, world: World) -> Self {
-        let layout = Layout { family: config.family, items: vec![Item::Position, Item::Euler, Item::CrLf] };
-        let stations = usize::from(config.stations);
         Self {
-            layouts: vec![layout; stations],
-            active: vec![true; stations],
-            hemispheres: vec![Vector3::x(); stations],
+            set: Settings::power_up(&config),
+            busy_until: i64::MIN,
             speech: Speech::new(config.baud),
             config,
             world,
             mood: Mood::Well,
             heard: Vec::new(),
-            binary: false,
-            centimetres: false,
-            continuous: false,
             frame: 0,
             frame_nanos: i64::MIN,
             clock_zero_nanos: 0,
@@ -111,6 +106,14 @@ impl PolhemusEmulator {
     /// Makes it ill, or well again.
     pub fn set_mood(&mut self, mood: Mood) {
         self.mood = mood;
+    }
+
+    /// Ctrl-Y: it starts up as if it had been switched on.
+    fn restart(&mut self, now_nanos: i64) {
+        self.set = Settings::power_up(&self.config);
+        self.heard.clear();
+        (self.frame, self.clock_zero_nanos) = (0, now_nanos + START_UP_NANOS);
+        self.busy_until = self.clock_zero_nanos;
     }
 
     /// Lets the frames go by that have ended by now.
@@ -126,7 +129,7 @@ impl PolhemusEmulator {
                 Mood::Silent => {}
                 Mood::WrongBaud => self.speech.say(self.frame_nanos, vec![0xE6, 0x18, 0x00, 0x7E, 0x98, 0xFE]),
                 // A line that cannot take what is measured loses frames.
-                Mood::Well if self.continuous && self.speech.free_at_nanos() <= self.frame_nanos + period => {
+                Mood::Well if self.set.continuous && self.speech.free_at_nanos() <= self.frame_nanos + period => {
                     self.report(self.frame_nanos)
                 }
                 Mood::Well => {}
@@ -137,13 +140,13 @@ impl PolhemusEmulator {
     fn report(&mut self, at_nanos: i64) {
         for station in 1..=self.config.stations {
             let index = usize::from(station - 1);
-            if !self.active[index] {
+            if !self.set.active[index] {
                 continue;
             }
             let measured = at_nanos - self.config.latency_nanos;
             let (position, rotation) = (self.world)(station, measured);
             let position = self.reported(index, position, at_nanos);
-            let unit = if self.centimetres { CENTIMETRE_M } else { INCH_M };
+            let unit = if self.set.centimetres { CENTIMETRE_M } else { INCH_M };
             let (roll, elevation, azimuth) = rotation.euler_angles();
             let ticks = (measured - self.clock_zero_nanos) as f64 * self.config.clock_rate * 1e-6;
             let record = Record {
@@ -157,7 +160,7 @@ impl PolhemusEmulator {
                 distortion: self.config.distortion,
                 pressed: false,
             };
-            let bytes = if self.binary { encode(&record, &self.layouts[index]) } else { text(&record) };
+            let bytes = if self.set.binary { encode(&record, &self.set.layouts[index]) } else { text(&record) };
             self.speech.say(at_nanos, bytes);
         }
     }
@@ -166,7 +169,7 @@ impl PolhemusEmulator {
 impl PolhemusEmulator {
     /// The position in the half of space that the station was told, or in the other one when it has changed its mind.
     fn reported(&self, index: usize, position: Vector3<f64>, nanos: i64) -> Vector3<f64> {
-        let mirrored = self.hemispheres[index].dot(&position) < 0.0;
+        let mirrored = self.set.hemispheres[index].dot(&position) < 0.0;
         let every = self.config.flip_every_nanos;
         let flipped = every > 0 && (nanos / every) % 2 != 0;
         if mirrored != flipped { -position } else { position }
@@ -175,7 +178,7 @@ impl PolhemusEmulator {
 
 impl Emulated for PolhemusEmulator {
     fn hear(&mut self, bytes: &[u8], now_nanos: i64) {
-        if self.mood != Mood::Well {
+        if self.mood != Mood::Well || now_nanos < self.busy_until {
             return;
         }
         self.advance(now_nanos);

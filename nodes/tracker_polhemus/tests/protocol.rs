@@ -109,6 +109,47 @@ fn a_fastraks_status() {
     assert_eq!(FastrakStatus::of(&[0xFF; 55]), None);
 }
 
+/// What a device says within so many milliseconds to what it is told.
+fn said(device: &mut PolhemusEmulator, told: &[u8], at_ms: i64, for_ms: i64) -> Vec<u8> {
+    device.hear(told, at_ms * 1_000_000);
+    let until = (at_ms + for_ms) * 1_000_000;
+    std::iter::from_fn(|| device.speak(until)).flat_map(|(_, bytes)| bytes).collect()
+}
+
+fn played(family: Family, stations: u8) -> PolhemusEmulator {
+    let world: World = Box::new(|_, _| (Vector3::new(0.1, 0.2, 0.3), UnitQuaternion::identity()));
+    PolhemusEmulator::new(EmulatorConfig { stations, baud: 0, ..EmulatorConfig::of(family) }, world)
+}
+
+#[test]
+fn a_fastrak_that_is_played_answers_as_drivers_know_it() {
+    let mut device = played(Family::Fastrak, 2);
+    let status = said(&mut device, b"S", 0, 0);
+    assert_eq!((status.len(), &status[..3], &status[53..]), (55, &b"2 S"[..], &b"\r\n"[..]));
+    assert_eq!(&status[3..9], b"000000", "text, inches, not continuous; no errors");
+    assert_eq!(said(&mut device, b"l1\r", 1, 0), b"21l1100\r\n", "two stations are on");
+    assert_eq!(said(&mut device, b"l1,0\rl2\r", 2, 0), b"22l0100\r\n");
+    said(&mut device, b"fuC", 3, 0);
+    assert_eq!(&said(&mut device, b"cS", 4, 0)[3..6], b"003", "binary and centimetres");
+    assert_eq!(FastrakStatus::of(&status[..54]).unwrap().firmware, "3.01", "an IS-900 sends one byte less");
+}
+
+#[test]
+fn what_starts_up_anew_has_forgotten_what_it_was_told() {
+    for (family, told, restart) in
+        [(Family::Fastrak, &b"O1,2,11,1\rf"[..], &b"\x19"[..]), (Family::Patriot, b"O1,2,7,8,11,1\rF1\r", b"\x19\r")]
+    {
+        let mut device = played(family, 1);
+        let text = said(&mut device, b"P", 0, 0);
+        assert!(text.starts_with(b"01 ") && text.ends_with(b"\r\n"), "text, until it is asked for more");
+        said(&mut device, told, 1, 0);
+        assert_eq!(said(&mut device, b"P", 2, 0).len(), Layout::of(family).bytes());
+        said(&mut device, restart, 3, 0);
+        assert!(said(&mut device, b"P", 9_000, 0).is_empty(), "it starts up for ten seconds");
+        assert_eq!(said(&mut device, b"P", 10_100, 0), text);
+    }
+}
+
 #[test]
 fn the_set_up_is_a_list_of_commands() {
     let sent = |config: &Config| {
