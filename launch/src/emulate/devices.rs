@@ -16,6 +16,19 @@ pub enum Device {
     Polhemus(Box<Polhemus>),
 }
 
+/// A button of a bird's mouse, with the byte that tells it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Button {
+    /// None of them.
+    None = 0x00,
+    /// The left one.
+    Left = 0x10,
+    /// The one in the middle.
+    Middle = 0x30,
+    /// The right one.
+    Right = 0x70,
+}
+
 /// A Flock of Birds.
 #[derive(Debug, clap::Args)]
 pub struct Flock {
@@ -34,6 +47,9 @@ pub struct Flock {
     /// The measure of metal that it tells, 0 to 127.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(0..=127))]
     pub metal: u8,
+    /// The button of its mouse that is held down.
+    #[arg(long, value_enum, default_value_t = Button::None)]
+    pub button: Button,
     /// Its own adaptive filter: steady at rest, late in motion. Beside the one that the rig file's tracker has.
     #[arg(long)]
     pub adaptive_filter: bool,
@@ -58,6 +74,7 @@ impl Flock {
             rate_hz: self.rate_hz,
             filters: self.adaptive_filter,
             metal: self.metal,
+            button: self.button as u8,
             flip_every_nanos: (self.flip_every * 1e9) as i64,
             ..Default::default()
         };

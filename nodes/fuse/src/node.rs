@@ -68,6 +68,9 @@ fn tell(evidence: &Evidence) {
     tracing::info!(
         "{fused} poses, {good} of them by all receivers, {lost} moments without; the receivers stood {apart}"
     );
+    if let Some(advice) = evidence.advice() {
+        tracing::warn!("{advice}");
+    }
 }
 
 /// Which receivers keep the others waiting, and since when on the clock on the wall.

@@ -21,18 +21,25 @@ struct Measured {
     found: [Vector3<f64>; 2],
     stated: [Vector3<f64>; 2],
     times_apart: Option<f64>,
+    advice: Option<&'static str>,
 }
 
 fn measure(config: &Config) -> Measured {
+    measure_with(config, 1.0)
+}
+
+/// By receivers that state so many times the noise that they have.
+fn measure_with(config: &Config, times: f64) -> Measured {
     let ([position, rotation], mut noise) = (sigmas(), Noise(7));
     let mut fuse = fuse(config.clone());
-    let mut measured = Measured { found: Default::default(), stated: Default::default(), times_apart: None };
+    let mut measured =
+        Measured { found: Default::default(), stated: Default::default(), times_apart: None, advice: None };
     let mut moments = 0.0;
     for step in 0..MOMENTS {
         for receiver in 0..config.receivers.len() {
             let (off, turn) = (noise.vector(position), noise.vector(rotation));
             let mut pose = erring(config, receiver, step * 10 * MS, off, turn);
-            (pose.position_sigma_m, pose.rotation_sigma_rad) = ([position; 3], [rotation; 3]);
+            (pose.position_sigma_m, pose.rotation_sigma_rad) = ([times * position; 3], [times * rotation; 3]);
             fuse.pose(receiver, &pose);
         }
         for pose in fuse.drain() {
@@ -46,7 +53,9 @@ fn measure(config: &Config) -> Measured {
     }
     assert!(moments >= MOMENTS as f64, "a moment has no pose");
     (0..config.receivers.len()).for_each(|receiver| fuse.pose(receiver, &handset::end(MOMENTS * 10 * MS)));
-    measured.times_apart = fuse.end().and_then(|(_, evidence)| evidence.times_apart());
+    if let Some((_, evidence)) = fuse.end() {
+        (measured.times_apart, measured.advice) = (evidence.times_apart(), evidence.advice());
+    }
     for sums in [&mut measured.found, &mut measured.stated] {
         sums.iter_mut().for_each(|sum| *sum = sum.map(|square| (square / moments).sqrt()));
     }
@@ -98,4 +107,19 @@ fn about_the_line_through_two_receivers_only_their_own_rotations_tell() {
     assert_near("rotation", &two.found[1], &analytic);
     assert_near("stated rotation", &two.stated[1], &analytic);
     assert!(two.stated[1].x > 2.0 * two.stated[1].y);
+}
+
+#[test]
+fn sigmas_that_are_far_from_right_are_told_with_what_to_do() {
+    // Nobody is an outlier here, whatever the sigmas are.
+    let config = Config { outlier_sigmas: 100.0, ..triangle() };
+    for (times, advice) in [(5.0, Some("smaller `apart_mm`")), (1.0, None), (0.2, Some("raise `apart_mm`"))] {
+        let measured = measure_with(&config, times);
+        let apart = measured.times_apart.unwrap();
+        assert!((apart * times - 1.0).abs() < 0.02, "{times} times the noise is stated: {apart}");
+        match (measured.advice, advice) {
+            (Some(told), Some(words)) => assert!(told.contains(words), "{times}: {told}"),
+            (told, wanted) => assert_eq!(told, wanted, "{times}"),
+        }
+    }
 }

@@ -8,8 +8,9 @@ mod harness;
 
 use harness::Listener;
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::{FaultsConfig, HostClock, PoseTracker as _, Pty, SensorPose};
+use serial_line::{Device as _, FaultsConfig, HostClock, PoseTracker as _, Pty, SensorPose};
 use std::path::Path;
+use std::time::Duration;
 use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, Mood, TestMode, World};
 use tracker_flock::port::Flock;
 use tracker_flock::protocol::address::Addressing;
@@ -330,4 +331,17 @@ fn a_file_is_no_serial_port() {
     let rig = listen(Config { port: file.path().to_owned(), ..Config::default() }, HostClock::start());
     let told = rig.trouble();
     assert!(told.contains("is no serial port"), "{told}");
+}
+
+/// A line that went away is an error at once, and one that is half dead is named within a second whatever it says
+/// (`serial_line`'s tests of `Noise`). What is silent, or says what is no record, has this long.
+#[test]
+fn silence_and_garbage_are_named_within_a_second() {
+    for rate_hz in [20.0, 50.0, 103.0, 144.0] {
+        let most = Flock::new(Config { rate_hz, ..Config::default() }).most_silence();
+        assert!(most < Duration::from_millis(900), "{rate_hz} Hz: {most:?}, and a look at the line takes 20 ms");
+    }
+    // Unless a record alone is longer to come.
+    let seldom = Flock::new(Config { rate_hz: 20.0, report_every: 32, ..Config::default() });
+    assert_eq!(seldom.most_silence(), Duration::from_secs_f64(4.0 * 32.0 / 20.0));
 }

@@ -232,7 +232,7 @@ fn an_offset_is_added_in_the_sensors_frame_and_a_boresighted_sensor_does_not_tur
     let mut bird = Played::alone();
     let before = words_of(&bird.ask(b"B"));
     // The manual's example: 5.4 inches are 4915.
-    bird.ask(&[&[b'K'], &4915i16.to_le_bytes()[..], &[0; 4]].concat());
+    bird.ask(&[&b"K"[..], &4915i16.to_le_bytes()[..], &[0; 4]].concat());
     let after = words_of(&bird.ask(b"B"));
     let along = UnitQuaternion::from_euler_angles(0.3, 0.2, 0.1) * Vector3::x() * 4915.0;
     for axis in 0..3 {

@@ -8,8 +8,9 @@ mod harness;
 
 use harness::Listener;
 use nalgebra::{UnitQuaternion, Vector3};
-use serial_line::{FaultsConfig, HostClock, Pty};
+use serial_line::{Device as _, FaultsConfig, HostClock, Pty};
 use std::path::Path;
+use std::time::Duration;
 use tracker_polhemus::emulator::{EmulatorConfig, Mood, PolhemusEmulator, World};
 use tracker_polhemus::port::Polhemus;
 use tracker_polhemus::protocol::records::Family;
@@ -109,4 +110,42 @@ fn another_device_than_was_configured_is_named() {
     let config = Config { port: pty.path().to_owned(), family: Family::Fastrak, ..Config::default() };
     let told = listen(config, clock).trouble();
     assert!(told.contains("says nothing") || told.contains("no record of a Fastrak"), "{told}");
+}
+
+/// A line that went away is an error at once, and one that is half dead is named within a second whatever it says
+/// (`serial_line`'s tests of `Noise`). What is silent, or says what is no record, has this long.
+#[test]
+fn silence_and_garbage_are_named_within_a_second() {
+    for family in [Family::Fastrak, Family::Liberty, Family::Patriot] {
+        let most = Polhemus::new(Config { family, ..Config::default() }).most_silence();
+        assert!(most < Duration::from_millis(900), "{family:?}: {most:?}, and a look at the line takes 20 ms");
+    }
+}
+
+#[test]
+fn what_cannot_be_opened_is_named_with_what_to_do() {
+    let clock = HostClock::start();
+    let told = |port: &Path| listen(Config { port: port.to_owned(), ..Config::default() }, clock).trouble();
+    assert!(told(Path::new("/dev/no_such_tracker")).contains("plug the adapter in"));
+    let file = tempfile::NamedTempFile::new().unwrap();
+    assert!(told(file.path()).contains("is no serial port"));
+    let pty = plugged(EmulatorConfig::of(Family::Liberty), FaultsConfig::default(), None, clock);
+    let mut rig = listen(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
+    rig.poses(3);
+    assert!(told(pty.path()).contains("is in use by another program"));
+    rig.poses(3);
+}
+
+#[test]
+fn a_line_that_is_cut_is_named_and_goes_on_when_it_is_whole_again() {
+    let clock = HostClock::start();
+    let second = 1_000_000_000;
+    let faults = FaultsConfig { cut_every_nanos: 4 * second, cut_for_nanos: second, ..FaultsConfig::default() };
+    let pty = plugged(EmulatorConfig::of(Family::Liberty), faults, None, clock);
+    let mut rig = listen(Config { port: pty.path().to_owned(), ..Config::default() }, clock);
+    rig.streaming();
+    let told = rig.trouble();
+    assert!(told.contains("says nothing"), "{told}");
+    rig.streaming();
+    rig.poses(20);
 }
