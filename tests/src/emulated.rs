@@ -107,6 +107,23 @@ pub fn simulated(out: &Path, seconds: f64) -> Command {
     up
 }
 
+/// The same sweep once more with the simulated tracker, read at other moments: its noise is another there, and nothing else.
+///
+/// # Panics
+/// When the rig of the tests cannot be read or written.
+pub fn simulated_at_other_moments(out: &Path, seconds: f64) -> Command {
+    let mut up = simulated(out, seconds);
+    let other = out.join("other.toml");
+    let write = || -> anyhow::Result<()> {
+        let mut rig: toml::Table = std::fs::read_to_string(quick(out))?.parse()?;
+        rig["simulation"]["tracker"]["rate_hz"] = 190.0.into();
+        Ok(std::fs::write(&other, toml::to_string(&rig)?)?)
+    };
+    assert!(write().is_ok(), "{}", other.display());
+    up.args(["--set", &format!("tracker.rig={other:?}")]);
+    up
+}
+
 fn sweep<'a>(up: &'a mut Command, out: &Path, seconds: f64) -> &'a mut Command {
     short_sets(up, out);
     let seconds = ["camera", "tracker"].map(|node| format!("{node}.seconds={seconds:?}"));

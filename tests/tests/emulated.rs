@@ -3,12 +3,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+mod model;
+
+use model::{Judged, Known, LEVER_MM, NOISE_DEG, NOISE_MM, SECONDS, apart, judged, known};
 use serial_line::{FaultsConfig, HostClock, Pty};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use system_tests::emulated::{Emulated, Tracker, one_at_a_time, simulated};
+use system_tests::emulated::{Emulated, Tracker, one_at_a_time};
+use system_tests::limn;
 use system_tests::rig::{Rig, first, wait_on, wait_until};
-use system_tests::{limn, number, repository, succeed};
 use tracker_flock::emulator::{EmulatorConfig, FlockEmulator, World};
 use wire::{Phase, Pose, Quality, topic};
 
@@ -19,7 +22,7 @@ const FLOCK: Tracker = Tracker {
     instance: "head",
     beside: "",
     config: "hemisphere = 'lower'\nrate_hz = 100.0",
-    seconds: 8.0,
+    seconds: SECONDS,
 };
 
 const LIBERTY: Tracker = Tracker {
@@ -29,7 +32,7 @@ const LIBERTY: Tracker = Tracker {
     instance: "head",
     beside: "",
     config: "hemisphere = [0.0, 0.0, 1.0]",
-    seconds: 8.0,
+    seconds: SECONDS,
 };
 
 /// Three birds on the handset, 50 mm apart, in group mode; what they measure is made one pose. Their mounts are known to the
@@ -48,73 +51,20 @@ const BIRDS: Tracker = Tracker {
     ..FLOCK
 };
 
-/// How far the surface that was played is from the one that is known: the median in millimetres, and which share of it is
-/// within 0.25 mm. Where a busy machine let the tracker measure nothing, it is not.
-fn apart(played: &Path, known: &Path) -> (f64, f64) {
-    let compare = |model: &Path, truth: &Path| -> serde_json::Value {
-        let meshes = [model, truth].map(|out| out.join("mesh.ply"));
-        serde_json::from_slice(&succeed(limn().arg("compare").args(meshes).arg("--json")).stdout).unwrap()
-    };
-    // Shares are told of the truth alone, so each is the truth once.
-    let (there, back) = (compare(played, known), compare(known, played));
-    assert_eq!(number(&back, "/truth_to_model/within/0/distance_mm"), 0.25);
-    (number(&there, "/model_to_truth/median_mm"), number(&back, "/truth_to_model/within/0/share"))
-}
-
-/// From the receiver to the surface.
-const LEVER_MM: f64 = 250.0;
-/// The noise of the rig `quick`, root mean square of the whole vector.
-const NOISE_MM: f64 = 0.05;
-const NOISE_DEG: f64 = 0.02;
-
-/// The poses of a sweep against the hand.
-struct Judged {
-    /// Half of the positions are no more wrong than this.
-    median_mm: f64,
-    /// The share of them that puts the surface within 0.25 mm of its place.
-    near: f64,
-    /// Root mean square of the hand's speed.
-    speed_mm_per_s: f64,
-}
-
-/// At the moments that the stamps and the rig's calibration say.
-fn judged(out: &Path, seconds: f64, poses: &[Pose]) -> Judged {
-    let (scene, rig) = (repository("config/scenes/cow.toml"), out.join("quick.toml"));
-    let known = world::Setup { scene, rig, seconds, ..world::Setup::default() }.open().unwrap();
-    let (mut off, mut near, mut square) = (Vec::new(), 0, 0.0);
-    for pose in poses {
-        let t_s = pose.header.stamp_nanos as f64 * 1e-9 + known.rig.clock.pose_offset_s;
-        if !(0.3..seconds).contains(&t_s) {
-            continue;
-        }
-        let said = geometry::rigid_from_wire(&pose.world_from_body).unwrap();
-        let at = |t_s| known.hand.world_from_body(t_s);
-        let truth = at(t_s).translation.vector;
-        let off_mm = (said.translation.vector - truth).norm() * 1e3;
-        let turned = at(t_s - pose.rotation_lag_nanos as f64 * 1e-9).rotation.angle_to(&said.rotation);
-        near += usize::from(off_mm.hypot(turned * LEVER_MM) < 0.25);
-        square += ((at(t_s + 0.001).translation.vector - truth).norm() * 1e6).powi(2);
-        off.push(off_mm);
-    }
-    off.sort_by(f64::total_cmp);
-    let count = off.len() as f64;
-    Judged { median_mm: off[off.len() / 2], near: near as f64 / count, speed_mm_per_s: (square / count).sqrt() }
-}
-
 /// `step_mm` is the step of the device's numbers.
 fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) -> String {
+    let Known { mesh, alike } = known();
     let folder = tempfile::tempdir().unwrap();
     let [played, known] = ["played", "known"].map(|name| folder.path().join(name));
+    std::fs::create_dir_all(&known).and_then(|()| std::fs::write(known.join("mesh.ply"), mesh)).unwrap();
     let mut rig = Emulated::start(tracker, &played);
     let bus = rig.rig.bus();
     let mut poses = bus.subscribe(&topic::pose("head"), 4096).unwrap();
     rig.scan(&bus);
-    let poses: Vec<Pose> = std::iter::from_fn(|| poses.next()).filter(|pose| pose.quality != Quality::Lost).collect();
+    let poses: Vec<Pose> = std::iter::from_fn(|| poses.next()).collect();
     drop(bus);
     let (status, said) = rig.end();
     assert!(status.success() && !said.contains("messages lost"), "{said}");
-    let (status, of_known) = Rig::start(&mut simulated(&known, tracker.seconds)).end();
-    assert!(status.success(), "{of_known}");
 
     // Noise, steps in three axes, and the hand's way in half a millisecond: what the driver's stamps are held to.
     let Judged { median_mm, near, speed_mm_per_s } = judged(&played, tracker.seconds, &poses);
@@ -122,14 +72,16 @@ fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) -
     println!("{}: half of the positions within {median_mm:.4} mm; sigma {sigma:.4} mm", tracker.kind);
     assert!(median_mm < sigma, "half of the positions are wrong by more than {median_mm} mm; sigma {sigma} mm");
     // Two surfaces differ by what the poses of both do, along one axis of three, turned or moved: half of a normal
-    // distribution lies within 0.67 sigma. Nor is the surface farther off than the poses that it was made with, but where
-    // one has closed a hole and the other has not: a twentieth of it.
+    // distribution lies within 0.67 sigma.
     let turn = NOISE_DEG.to_radians() * LEVER_MM;
     let sigma = ((sigma.powi(2) + NOISE_MM.powi(2) + 2.0 * turn.powi(2)) / 3.0).sqrt();
     let (median, share) = apart(&played, &known);
     println!("the models are {median:.4} mm apart in the median; sigma {sigma:.4} mm");
-    println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are");
-    assert!(median < 0.67 * sigma && share > near - 0.05, "{median} mm, {share}; sigma {sigma} mm, {near}\n{said}");
+    assert!(median < 0.67 * sigma, "{median} mm; sigma {sigma} mm\n{said}");
+    // Noise alone lets one surface close a hole and leaves it open in the other; and where there is no good pose, there is no
+    // good surface. But most of the poses are good.
+    println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are, and {alike:.3} where noise alone differs");
+    assert!(near > 0.5 && share > near * alike, "{share}; {near} of the poses, {alike} by noise alone\n{said}");
     said
 }
 

@@ -63,6 +63,11 @@ fn the_same_pose_in_all_formats() {
     let words: Vec<i16> = POSE_WORDS[..3].iter().chain(&MATRIX_WORDS).copied().collect();
     assert_eq!(encode(&record(Format::PositionMatrix, &words), &Layout::plain(Format::PositionMatrix)), MATRIX);
 
+    let parts = [0.66446, 0.69636, 0.12279, 0.24184].map(|part: f64| (part * 32768.0).round() as i16);
+    let words: Vec<i16> = POSE_WORDS[..3].iter().chain(&parts).copied().collect();
+    let quaternion = Layout::plain(Format::PositionQuaternion);
+    assert_eq!(encode(&record(Format::PositionQuaternion, &words), &quaternion), QUATERNION);
+
     let read = |bytes: &[u8], format| {
         Reading::of(&decoded(bytes, Layout::plain(format))[0], Scale::Inches36, QuaternionSense::AsMatrix).unwrap()
     };
@@ -83,6 +88,21 @@ fn the_same_pose_in_all_formats() {
         QuaternionSense::AsMatrix,
     );
     assert!((double.unwrap().position_m.unwrap() - 2.0 * position).abs().max() < 2.4e-4);
+}
+
+#[test]
+fn the_smallest_step_is_four_counts_of_the_scale() {
+    for (scale, step_mm) in [(Scale::Inches36, 0.1116), (Scale::Inches72, 0.2232), (Scale::Inches144, 0.4465)] {
+        let at = |word| {
+            let record = record(Format::PositionAngles, &[word, 0, 0, word, 0, 0]);
+            Reading::of(&record, scale, QuaternionSense::AsMatrix).unwrap()
+        };
+        let (here, next) = (at(1000), at(1004));
+        let moved = (next.position_m.unwrap() - here.position_m.unwrap()).norm() * 1e3;
+        assert!((moved - step_mm).abs() < 1e-4, "{scale:?}: {moved} mm");
+        let turned = next.rotation.unwrap().angle_to(&here.rotation.unwrap()).to_degrees();
+        assert!((turned - 0.02197).abs() < 1e-5, "{turned} degrees");
+    }
 }
 
 #[test]

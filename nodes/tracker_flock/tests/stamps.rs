@@ -158,6 +158,21 @@ fn the_adaptive_filter_is_late_in_motion_and_steady_at_rest() {
 }
 
 #[test]
+fn the_adaptive_filter_is_later_the_farther_the_sensor_is() {
+    // As the bird has it after power-up: 2 to 512 from the nearest range to the farthest.
+    let config = Config { dc_motion: None, ..config() };
+    let left = |x: f64| {
+        let step = move |nanos: i64| Vector3::new(if nanos < 2_000_000_000 { x } else { x + 0.01 }, 0.1, 0.1);
+        let emulator = EmulatorConfig { filters: true, ..EmulatorConfig::default() };
+        let poses = played(&config, emulator, FaultsConfig::default(), 4, step);
+        let at = poses.iter().find(|pose| pose.pose.header.stamp_nanos > 2_100_000_000).unwrap();
+        1.0 - (metres(at).x - x) / 0.01
+    };
+    let [near, middle, far] = [0.3, 0.6, 0.85].map(left);
+    assert!(2.0 * near < middle && 2.0 * middle < far, "a tenth of a second behind a step: {near} {middle} {far}");
+}
+
+#[test]
 fn settings_that_cannot_be_are_refused_with_their_name() {
     for (config, key) in [
         (Config { baud: 14_400, ..config() }, "baud"),
