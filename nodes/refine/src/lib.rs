@@ -73,6 +73,8 @@ mod checks;
 mod clock;
 mod cloud;
 mod config;
+#[cfg(feature = "node")]
+mod course;
 mod evidence;
 mod finish;
 mod gather;
