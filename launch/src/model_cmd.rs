@@ -89,6 +89,7 @@ fn tell(
         counts: harvest.counts(),
         stages: harvest.stages(),
         times: harvest.times(started),
+        closed: harvest.closed.as_ref().and_then(report::closed),
         refinement: harvest.refinement.as_ref().map(evidence::refined),
         failures: failure.map(|error| format!("{error:#}")).into_iter().collect(),
         ..Report::default()

@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<()> {
     points.iter_mut().for_each(|point| scale(point, metres));
     let (count, started) = (points.len(), Instant::now());
     let header = Header { phase: Phase::End, ..Header::default() };
-    surfer.update(&Cloud { header, extent: Extent::Whole, points: points.into(), refused: Vec::new() });
+    surfer.update(&Cloud { header, extent: Extent::Whole, table: None, points: points.into(), refused: Vec::new() });
     let measured = surfer.final_mesh();
     let mesh = TriangleMesh::from(&measured);
     for refusal in surfer.refused() {

@@ -21,6 +21,7 @@
 
 mod albedo;
 mod border;
+mod closed;
 mod colour;
 mod data_uri;
 mod error_map;
@@ -34,6 +35,7 @@ mod write;
 
 pub use albedo::{albedo, painted};
 pub use border::{BorderError, border_error};
+pub use closed::{Closed, caps, closed};
 pub use colour::{ColourError, ColourErrorReason, colour_error};
 pub use render::render;
 pub use seen::{Gate, seen_mask};

@@ -1,6 +1,6 @@
 //! What is told of a run: plain numbers, as they stand in report.json.
 
-use crate::{BorderError, ColourError, StatedError};
+use crate::{BorderError, Closed, ColourError, StatedError};
 use geometry::Comparison;
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,8 @@ pub struct Report {
     pub comparison: Option<Comparison>,
     /// The surface against the truth after it was laid onto it: what is left is its shape.
     pub aligned: Option<Aligned>,
+    /// What closes the surface, where nobody saw anything: not part of the comparisons above.
+    pub closed: Option<Closed>,
     /// What refinement has done.
     pub refinement: Option<Refined>,
     /// What the surface says of its own error, against the error that it has.

@@ -63,6 +63,7 @@ fn model(colour: impl Fn(f64, f64) -> [u8; 4]) -> Model {
             vertices_m: square.vertices.iter().map(|p| (*p).into()).collect(),
             normals: vec![].into(),
             sigma_m: vec![].into(),
+            measured: square.triangles.len() as u32,
             triangles: square.triangles.into(),
         },
         uv: square.uv.into(),

@@ -32,6 +32,7 @@ fn model(cell: impl Fn(u32, u32) -> [u8; 4]) -> Model {
         vertices_m: square.vertices.iter().map(|p| (*p).into()).collect(),
         normals: vec![].into(),
         sigma_m: vec![].into(),
+        measured: square.triangles.len() as u32,
         triangles: square.triangles.into(),
     };
     Model {

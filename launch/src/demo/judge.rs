@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result};
 use formats::mesh::LoadedMesh;
 use geometry::{Camera, Comparison, MeshIndex, TimedPose, TriangleMesh};
 use nalgebra::{Isometry3, Point3};
-use report::{Aligned, ColourErrorReason, Exhibits, Gate, Machine, Refined, Report, Run, Time};
+use report::{Aligned, Closed, ColourErrorReason, Exhibits, Gate, Machine, Refined, Report, Run, Time};
 use std::path::Path;
 use std::time::Instant;
 use world::{Known, Surface};
@@ -40,6 +40,7 @@ pub fn judge(
     let (shape, before) = rayon::join(|| bench.shape(harvest), || bench.before(plan, harvest));
     let (onto, laid) = match shape {
         Ok(shape) => {
+            report.closed = bench.closed(harvest, &shape);
             (report.comparison, report.aligned) = (Some(shape.standing), Some(shape.aligned));
             (shape.onto, Some(shape.laid))
         }
@@ -111,6 +112,15 @@ impl Bench {
         let standing = geometry::compare(&laid, &self.truth.mesh, Some(&self.seen), self.seed)?;
         let (onto, aligned) = lay_onto(&mut laid, &self.truth.mesh, &self.seen, self.seed)?;
         Ok(Shape { standing, onto, aligned, laid })
+    }
+
+    /// What closes the surface, laid onto the truth with it.
+    fn closed(&self, harvest: &Harvest, shape: &Shape) -> Option<Closed> {
+        let whole = harvest.closed.as_ref()?;
+        let mut caps = report::caps(whole);
+        move_by(&mut caps, &shape.onto);
+        let caps = geometry::distances_to(&caps, &self.truth.mesh, self.seed).ok();
+        Some(report::closed(whole)?.against(caps, &shape.aligned.comparison.model_to_truth))
     }
 
     /// The surface that would have come out without refinement. There may be nothing that could be called a surface, which

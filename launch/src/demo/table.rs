@@ -35,6 +35,17 @@ pub fn print(report: &Report, out: &Path) -> Result<()> {
         row("laid onto the truth", format!("rms {:.3} mm, median {:.3}, 95 % {:.3}", d.rms_mm, d.median_mm, d.p95_mm));
         row("moved for that", format!("{:.2} mm, {:.2} degrees", aligned.moved_mm, aligned.turned_deg));
     }
+    if let Some(closed) = &report.closed {
+        let is_closed =
+            if closed.watertight { "yes".to_owned() } else { format!("no, {} open edges", closed.open_edges) };
+        row("closed", format!("{is_closed}; {:.1} % of the area was not measured", 100.0 * closed.unmeasured_share));
+        if let Some(caps) = &closed.caps_to_truth {
+            row("caps over that to the truth", format!("rms {:.2} mm, 95 % {:.2}", caps.rms_mm, caps.p95_mm));
+        }
+        if let Some(rms_mm) = closed.rms_mm {
+            row("the closed model to the truth", format!("rms {rms_mm:.3} mm"));
+        }
+    }
     if let Some(stated) = &report.stated {
         let [one, two] = [stated.within_one, stated.within_two].map(|share| 100.0 * share);
         let median = stated.median_sigma_mm;

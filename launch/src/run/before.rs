@@ -1,4 +1,5 @@
-//! What the scan would be without refinement: the same balls and the same surface, over what `register` made of it.
+//! What the scan would be without refinement: the same balls and the same surface, over what `register` made of it. It is
+//! there to be held against the truth, so nothing is guessed.
 
 use crate::plan::Plan;
 use anyhow::{Context as _, Result};
@@ -11,7 +12,8 @@ use wire::{Mesh, Scan};
 pub fn surface(plan: &Plan, scans: &[Scan]) -> Result<Mesh> {
     let mut clusterer = BallClusterer::new(config(plan, "cluster")?)?;
     scans.iter().for_each(|scan| clusterer.insert(scan));
-    let mut surfer = Surfer::new(config(plan, "surface")?)?;
+    let settings: surface::Config = config(plan, "surface")?;
+    let mut surfer = Surfer::new(surface::Config { close: false, ..settings })?;
     surfer.update(&clusterer.whole());
     Ok(surfer.final_mesh())
 }

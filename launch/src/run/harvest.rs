@@ -26,8 +26,10 @@ pub struct Harvest {
     pub cloud: Vec<CloudPoint>,
     /// The true way of the camera, when the world is known.
     pub truth: Vec<TrajectorySample>,
-    /// The final surface.
+    /// The final surface, as far as it was measured.
     pub mesh: Option<Mesh>,
+    /// The same with the caps that close it.
+    pub closed: Option<Mesh>,
     /// The final model.
     pub model: Option<Model>,
 }

@@ -98,7 +98,10 @@ impl Ears {
             }
         }
         while let Some(mesh) = self.meshes.next() {
-            harvest.mesh = Some(mesh).filter(|mesh| mesh.header.is_end()).or(harvest.mesh.take());
+            if mesh.header.is_end() {
+                harvest.mesh = Some(mesh.without_caps());
+                harvest.closed = Some(mesh);
+            }
         }
         while let Some(model) = self.models.next() {
             harvest.model = Some(model).filter(|model| model.header.is_end()).or(harvest.model.take());

@@ -183,6 +183,7 @@ fn a_million_points_survive_the_way() {
     let sent = wire::Cloud {
         header: Header::default(),
         extent: Extent::Whole,
+        table: None,
         points: (0..1_000_000).map(point).collect(),
         refused: vec![],
     };

@@ -127,6 +127,15 @@ pub fn compare(
     })
 }
 
+/// The one direction of [`compare`] alone: from the model to the truth.
+pub fn distances_to(model: &TriangleMesh, truth: &TriangleMesh, seed: u64) -> Result<Distances, CompareError> {
+    let model = MeshIndex::new(model).map_err(CompareError::Model)?;
+    let truth = MeshIndex::new(truth).map_err(CompareError::Truth)?;
+    let on_model = samples_of(&model, "model", seed)?;
+    let signed_mm: Vec<f64> = on_model.par_iter().map(|s| signed_mm(&truth, s)).collect();
+    Ok(distances(&signed_mm))
+}
+
 fn samples_of(mesh: &MeshIndex, name: &'static str, seed: u64) -> Result<Vec<SurfaceSample>, CompareError> {
     let samples = mesh.sample(COMPARE_SAMPLES, seed);
     if samples.is_empty() { Err(CompareError::NoArea(name)) } else { Ok(samples) }

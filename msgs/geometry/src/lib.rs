@@ -32,7 +32,8 @@ mod trajectory;
 pub use align::{AlignError, Alignment, align};
 pub use camera::{Camera, CameraError};
 pub use distance::{
-    COMPARE_SAMPLES, CompareError, Comparison, Completeness, Distances, WITHIN_MM, Within, compare, truth_samples,
+    COMPARE_SAMPLES, CompareError, Comparison, Completeness, Distances, WITHIN_MM, Within, compare, distances_to,
+    truth_samples,
 };
 pub use index::{Closest, Hit, MeshIndex};
 pub use mesh::{MeshError, TriangleMesh};

@@ -93,6 +93,15 @@ impl TriangleMesh {
         (0..self.triangles.len()).map(|t| 0.5 * f64::from(self.area_normal(t).norm())).sum()
     }
 
+    /// How many edges have no triangle, or not exactly one, on their other side: none of a mesh that is closed.
+    pub fn open_edges(&self) -> usize {
+        let of = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
+        let mut edges: Vec<(u32, u32)> = self.triangles.iter().flat_map(of).collect();
+        edges.sort_unstable();
+        let uses = |edge: (u32, u32)| edges.partition_point(|e| *e <= edge) - edges.partition_point(|e| *e < edge);
+        edges.iter().filter(|&&(a, b)| uses((a, b)) != 1 || uses((b, a)) != 1).count()
+    }
+
     /// Smallest and largest corner of the box around it; `None` without vertices.
     pub fn bounds(&self) -> Option<[Point3<f32>; 2]> {
         let first = *self.vertices.first()?;

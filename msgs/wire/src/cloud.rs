@@ -34,16 +34,29 @@ layout! {
 }
 
 layout! {
+    /// The table on which a thing stands: normal . p = distance_m, in the world, the normal upwards.
+    #[derive(Copy)]
+    pub struct TablePlane {
+        /// Unit normal, towards the thing.
+        pub normal: [f64; 3],
+        /// Along the normal.
+        pub distance_m: f64,
+    }
+}
+
+layout! {
     /// The cloud, or what of it changed.
     pub struct Cloud {
         /// The stamp is the latest scan's that went in.
         pub header: Header,
         /// Whether this is all of it.
         pub extent: Extent,
+        /// What was taken away as the table; nothing of the thing is below it.
+        pub table: Option<TablePlane>,
         /// The balls, by their numbers.
         pub points: Bulk<CloudPoint>,
         /// Points that went into no ball of this cloud, by reason.
         pub refused: Vec<Refusal>,
     }
 }
-message!(Cloud @ 1);
+message!(Cloud @ 2);

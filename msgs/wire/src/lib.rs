@@ -44,7 +44,7 @@ mod trajectory;
 pub use bulk::Bulk;
 pub use calibration::{Calibration, CameraIntrinsics, LaserPlane, PeaksPer};
 pub use catalogue::{catalogue, layout_text};
-pub use cloud::{Cloud, CloudPoint, Extent};
+pub use cloud::{Cloud, CloudPoint, Extent, TablePlane};
 pub use frame::{Frame, FrameError, Light, PixelFormat};
 pub use header::{Clock, Header, Phase, Refusal, RunPhase};
 pub use housekeeping::{Health, InputHealth, LogLevel, LogLine, Progress};

@@ -124,11 +124,11 @@ impl BallClusterer {
         let points = output::points(&self.state, &ids, self.config.least_points);
         let refused = self.take_refused();
         let extent = if std::mem::take(&mut self.afresh) { Extent::Whole } else { Extent::Changes };
-        Cloud { header: self.header, extent, points: points.into(), refused }
+        Cloud { header: self.header, extent, table: None, points: points.into(), refused }
     }
 
     /// All balls with enough points, by number; the points of the others are refused as outliers, and the balls of the
-    /// table when it is to be removed.
+    /// table when it is to be removed: then the cloud tells where it is.
     pub fn whole(&mut self) -> Cloud {
         self.state.take_changed();
         self.afresh = false;
@@ -137,12 +137,12 @@ impl BallClusterer {
             (0..self.state.balls.len() as u32).partition(|&id| self.state.balls[id as usize].count >= least);
         let mut points: Vec<CloudPoint> = output::points(&self.state, &kept, least);
         let mut refused = self.take_refused();
-        if self.config.table == Table::Remove {
-            refuse(&mut refused, "ball of the table", table::take_away(&mut points) as u64);
-        }
+        let all = points.len();
+        let table = if self.config.table == Table::Remove { table::take_away(&mut points) } else { None };
+        refuse(&mut refused, "ball of the table", (all - points.len()) as u64);
         let count = outliers.iter().map(|&id| u64::from(self.state.balls[id as usize].count)).sum();
         refuse(&mut refused, &format!("outlier: in a ball of fewer than {least} points"), count);
-        Cloud { header: self.header, extent: Extent::Whole, points: points.into(), refused }
+        Cloud { header: self.header, extent: Extent::Whole, table, points: points.into(), refused }
     }
 
     /// How much is held.

@@ -2,7 +2,7 @@
 
 use geometry::{Facing, Table, TableSearch};
 use nalgebra::{Point3, Vector3};
-use wire::CloudPoint;
+use wire::{CloudPoint, TablePlane};
 
 /// A ball within 2 mm of a plane, with a normal that is nearly the plane's (what touches the table has other normals).
 const SEARCH: TableSearch = TableSearch {
@@ -17,14 +17,13 @@ const SEARCH: TableSearch = TableSearch {
 const MARGIN_RMS: f64 = 5.0;
 const LEAST_MARGIN_M: f64 = 4e-4;
 
-/// Takes away the balls that lie on the table or behind it; returns how many. None without a table.
-pub fn take_away(balls: &mut Vec<CloudPoint>) -> usize {
+/// Takes away the balls that lie on the table or behind it, and tells where it is. `None` without a table.
+pub fn take_away(balls: &mut Vec<CloudPoint>) -> Option<TablePlane> {
     let at = |ball: &CloudPoint| Point3::from(ball.position_m).cast();
     let facing = |ball: &CloudPoint| Facing { position: at(ball), towards: Vector3::from(ball.normal).cast() };
     let seen: Vec<Facing> = balls.iter().map(facing).collect();
-    let Some(table) = Table::find(&seen, &SEARCH) else { return 0 };
+    let table = Table::find(&seen, &SEARCH)?;
     let margin_m = (MARGIN_RMS * table.rms_m).max(LEAST_MARGIN_M);
-    let all = balls.len();
     balls.retain(|ball| table.height_m(&at(ball)) > margin_m);
-    all - balls.len()
+    Some(TablePlane { normal: table.normal.into(), distance_m: table.distance_m })
 }

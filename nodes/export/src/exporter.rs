@@ -79,18 +79,19 @@ impl Exporter {
         Ok(written(path, format!("{} points", points.len()))?)
     }
 
-    /// Takes the surface; writes mesh.ply and mesh.stl when it is the final one.
+    /// Takes the surface; when it is the final one, writes mesh.ply, what was measured, and mesh.stl, closed where it came closed.
     pub fn mesh(&self, mesh: &Mesh) -> Result<Vec<Written>, ExportError> {
         if !mesh.header.is_end() {
             return Ok(Vec::new());
         }
-        let (mesh, sigma_m) = (TriangleMesh::from(mesh), &mesh.sigma_m);
+        let measured = mesh.without_caps();
+        let (open, whole) = (TriangleMesh::from(&measured), TriangleMesh::from(mesh));
         let (ply, stl) = (self.folder.join("mesh.ply"), self.folder.join("mesh.stl"));
-        refuse_empty(&mesh, &ply)?;
-        formats::mesh::write_measured_ply(&ply, &mesh, sigma_m)?;
-        formats::mesh::write_stl(&stl, &mesh)?;
-        let holds = format!("{} triangles", mesh.triangles.len());
-        Ok(vec![written(ply, holds.clone())?, written(stl, holds)?])
+        refuse_empty(&open, &ply)?;
+        formats::mesh::write_measured_ply(&ply, &open, &measured.sigma_m)?;
+        formats::mesh::write_stl(&stl, &whole)?;
+        let holds = |mesh: &TriangleMesh| format!("{} triangles", mesh.triangles.len());
+        Ok(vec![written(ply, holds(&open))?, written(stl, holds(&whole))?])
     }
 
     /// Takes the painted surface; writes model.glb and model.obj (with model.mtl and model.png) when it is the final one, and

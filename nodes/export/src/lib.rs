@@ -3,7 +3,7 @@
 //! | in | out, in one folder |
 //! |---|---|
 //! | cloud | cloud.ply: position, normal, colour, count, sigma, spread of every ball |
-//! | mesh | mesh.ply, mesh.stl |
+//! | mesh | mesh.ply: what was measured, with its sigma; mesh.stl: closed, with the caps over what nobody saw, if it has any |
 //! | model | model.glb; model.obj with model.mtl and model.png; cloud.ply again, with its colours |
 //!
 //! Messages are held until the last one of a stream has come (phase `End`); then its files are written, each under another
@@ -21,6 +21,7 @@
 //!     normals: vec![].into(),
 //!     sigma_m: vec![].into(),
 //!     triangles: vec![[0, 1, 2]].into(),
+//!     measured: 1,
 //! };
 //! let written = exporter.mesh(&mesh).unwrap();
 //! assert!(written[0].to_string().contains("mesh.ply: 1 triangles"));

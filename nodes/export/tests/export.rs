@@ -23,7 +23,13 @@ fn ball(id: u32, x: f32) -> CloudPoint {
 }
 
 fn changes(phase: Phase, revision: u32, points: Vec<CloudPoint>) -> Cloud {
-    Cloud { header: header(phase, revision), extent: Extent::Changes, points: points.into(), refused: Vec::new() }
+    Cloud {
+        header: header(phase, revision),
+        extent: Extent::Changes,
+        table: None,
+        points: points.into(),
+        refused: Vec::new(),
+    }
 }
 
 fn square(phase: Phase) -> Mesh {
@@ -33,6 +39,7 @@ fn square(phase: Phase) -> Mesh {
         normals: vec![[0.0, 0.0, 1.0]; 4].into(),
         sigma_m: vec![].into(),
         triangles: vec![[0, 1, 2], [0, 2, 3]].into(),
+        measured: 2,
     }
 }
 

@@ -47,6 +47,7 @@ fn ball(n: u32) -> Mesh {
         vertices_m: vertices.into(),
         normals: vec![].into(),
         sigma_m: vec![].into(),
+        measured: triangles.len() as u32,
         triangles: triangles.into(),
     }
 }

@@ -102,6 +102,8 @@ impl Painter {
             normals: atlas.vertices.iter().map(|&i| source.normals[i as usize]).collect(),
             sigma_m: atlas.vertices.iter().filter_map(|&i| source.sigma_m.get(i as usize).copied()).collect(),
             triangles: atlas.triangles.clone().into(),
+            // The atlas keeps the order of the triangles.
+            measured: source.measured,
         };
         let stamp_nanos = surface.latest_stamp_nanos.unwrap_or(source.header.stamp_nanos);
         Model {
@@ -133,6 +135,7 @@ fn empty() -> Model {
             normals: Vec::new().into(),
             sigma_m: Vec::new().into(),
             triangles: Vec::new().into(),
+            measured: 0,
         },
         uv: Vec::new().into(),
         texture_width: 0,

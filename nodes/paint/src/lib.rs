@@ -52,7 +52,7 @@
 //! let square = vec![[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
 //! let mesh = Mesh {
 //!     header: Header::default(), vertices_m: square.into(), normals: vec![].into(), sigma_m: vec![].into(),
-//!     triangles: vec![[0, 1, 2], [0, 2, 3]].into(),
+//!     triangles: vec![[0, 1, 2], [0, 2, 3]].into(), measured: 2,
 //! };
 //! painter.mesh(&mesh).unwrap();
 //! let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);

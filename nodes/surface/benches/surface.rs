@@ -26,6 +26,7 @@ fn live(c: &mut Criterion) {
     let cloud = |points: Vec<CloudPoint>, extent| Cloud {
         header: Header::default(),
         extent,
+        table: None,
         points: points.into(),
         refused: Vec::new(),
     };

@@ -12,9 +12,13 @@ pub struct Config {
     /// Radius of the neighbourhood to which a quadric is fitted; 0 takes it from the cloud's spacing and noise. Detail
     /// much smaller than it is smoothed away, noise is averaged over it.
     pub radius_mm: f64,
-    /// In the final mesh, holes whose rim is at most pi times this long are filled. A large value closes an open
-    /// underside as well: the cap is a membrane over the rim.
+    /// In the final mesh, holes whose rim is at most pi times this long are filled, by a membrane over the rim, and count as
+    /// measured.
     pub fill_holes_mm: f64,
+    /// Whether the holes that are left in the final mesh are closed as well, by caps that are told apart from what was
+    /// measured ([`wire::Mesh::measured`]). One that would be larger than a third of what was measured is left open, but where
+    /// the thing stands on the table with it.
+    pub close: bool,
     /// In the final mesh, loose pieces whose bounding box has a shorter diagonal than this are dropped, and those with less
     /// area than a quarter of its square.
     pub drop_islands_mm: f64,
@@ -24,7 +28,14 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        Self { cell_mm: 0.0, radius_mm: 0.0, fill_holes_mm: 10.0, drop_islands_mm: 10.0, live_every_s: 1.0 }
+        Self {
+            cell_mm: 0.0,
+            radius_mm: 0.0,
+            fill_holes_mm: 10.0,
+            close: false,
+            drop_islands_mm: 10.0,
+            live_every_s: 1.0,
+        }
     }
 }
 

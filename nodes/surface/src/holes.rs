@@ -1,34 +1,65 @@
-//! Holes in the final mesh: found as rims, closed by a cap.
+//! Holes in the final mesh: found as rims, closed by caps.
 
-use crate::cap::Cap;
+use crate::cap::{Cap, Edges, edge};
+use crate::grid::KeyHash;
+use crate::ground::Ground;
 use crate::sheet::Sheet;
-use crate::topology::rims;
+use crate::topology::{pieces, rims};
+use rayon::prelude::*;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
+/// A cap larger than this share of what was measured of its piece would be more of a guess than of a model.
+const LARGEST: f32 = 1.0 / 3.0;
+
 /// Fills every hole whose rim is at most pi times `largest_m` long.
-pub fn fill(sheet: &mut Sheet, largest_m: f64) {
-    let rims: Vec<Vec<u32>> = rims(sheet).into_iter().filter(|rim| length_m(sheet, rim) <= PI * largest_m).collect();
-    if rims.is_empty() {
-        return;
-    }
-    let on_rim: HashSet<u32> = rims.iter().flatten().copied().collect();
+pub fn fill(sheet: &mut Sheet, largest_m: f64, ground: Option<&Ground>) {
+    let mut caps = over_all(sheet);
+    caps.retain(|(_, cap)| f64::from(cap.length_m()) <= PI * largest_m);
+    sew(sheet, caps, ground);
+}
+
+/// Closes every hole that is left, whatever its size, but those over which the cap would be larger than a third of what was
+/// measured of the piece: a wall, or a thing of which one side was seen. A thing that stands on the table with all of such
+/// a rim is closed all the same. Returns how many were left open.
+pub fn close(sheet: &mut Sheet, ground: Option<&Ground>) -> u64 {
+    let (mut pieces, areas_m2) = pieces(sheet);
+    let (guessed, left_open): (Vec<_>, Vec<_>) = over_all(sheet).into_iter().partition(|(rim, cap)| {
+        let measured_m2 = areas_m2[pieces.find(rim[0]) as usize];
+        cap.area_m2() <= LARGEST * measured_m2 || ground.is_some_and(|ground| stands(cap, ground))
+    });
+    sew(sheet, guessed, ground);
+    left_open.len() as u64
+}
+
+/// All rims, each with its cap.
+fn over_all(sheet: &Sheet) -> Vec<(Vec<u32>, Cap)> {
+    let with_cap = |rim: Vec<u32>| {
+        let cap = Cap::over(sheet, &rim);
+        (rim, cap)
+    };
+    rims(sheet).into_par_iter().map(with_cap).collect()
+}
+
+/// Whether a rim is as low as what stands on the table, on the whole.
+fn stands(cap: &Cap, ground: &Ground) -> bool {
+    let heights_m = cap.positions.iter().map(|p| ground.height_m(p));
+    heights_m.sum::<f32>() <= ground.standing_m * cap.positions.len() as f32
+}
+
+fn sew(sheet: &mut Sheet, caps: Vec<(Vec<u32>, Cap)>, ground: Option<&Ground>) {
+    let on_rim: HashSet<u32, KeyHash> = caps.iter().flat_map(|(rim, _)| rim).copied().collect();
     // A cap may not use an edge that the mesh already has: it would get a third triangle.
-    let mut taken: HashSet<(u32, u32)> = HashSet::new();
+    let mut taken = Edges::default();
     for triangle in &sheet.triangles {
         for k in 0..3 {
             let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
             if on_rim.contains(&a) && on_rim.contains(&b) {
-                taken.insert((a.min(b), a.max(b)));
+                taken.insert(edge(a, b));
             }
         }
     }
-    for rim in rims {
-        Cap::over(sheet, &rim, &taken).sew(sheet, &rim);
+    for (rim, cap) in caps {
+        cap.sew(sheet, &rim, &taken, ground);
     }
-}
-
-fn length_m(sheet: &Sheet, rim: &[u32]) -> f64 {
-    let at = |k: usize| sheet.positions[rim[k % rim.len()] as usize];
-    (0..rim.len()).map(|k| f64::from((at(k + 1) - at(k)).norm())).sum()
 }

@@ -65,7 +65,9 @@ mod config;
 mod field;
 mod flips;
 mod grid;
+mod ground;
 mod holes;
+mod least_area;
 mod marching;
 mod model;
 #[cfg(feature = "node")]

@@ -3,6 +3,8 @@
 //! a membrane over its rim.
 
 use crate::cap::{Cap, edge};
+use crate::grid::KeyHash;
+use crate::ground::Ground;
 use std::collections::HashMap;
 
 /// Edges longer than this share of the rim's mean edge are split.
@@ -13,7 +15,7 @@ const RELAXATIONS: usize = 8;
 const LAST_RELAXATIONS: usize = 60;
 
 /// For each directed edge the triangle on its left.
-type Left = HashMap<(u32, u32), u32>;
+type Left = HashMap<(u32, u32), u32, KeyHash>;
 
 fn left_of(cap: &Cap) -> Left {
     let edges = |(t, &[a, b, c]): (u32, &[u32; 3])| [((a, b), t), ((b, c), t), ((c, a), t)];
@@ -46,27 +48,37 @@ fn hinges(cap: &Cap, left: &Left) -> Vec<Hinge> {
     hinges
 }
 
-/// Splits, flips and relaxes until no edge is too long.
-pub fn refine(cap: &mut Cap) {
-    let at = |k: usize| cap.positions[k % cap.rim];
-    let mean = (0..cap.rim).map(|k| (at(k + 1) - at(k)).norm()).sum::<f32>() / cap.rim as f32;
+/// Splits, flips and relaxes until no edge is too long; then lays what is low onto the ground, and what would be below it.
+pub fn refine(cap: &mut Cap, ground: Option<&Ground>) {
+    let longest_m = LONGEST * cap.length_m() / cap.rim as f32;
+    // An edge that the mesh has already would get a third triangle. Halves of it are new edges.
+    while split(cap, |cap, [a, b], _| cap.taken.contains(&edge(a, b))) {}
     flip(cap);
     for _ in 0..ROUNDS {
-        if !split(cap, LONGEST * mean) {
+        if !split(cap, |_, _, length_m| length_m > longest_m) {
             break;
         }
         flip(cap);
-        relax(cap, RELAXATIONS);
+        relax(cap, RELAXATIONS, |_| true);
         flip(cap);
     }
-    relax(cap, LAST_RELAXATIONS);
+    relax(cap, LAST_RELAXATIONS, |_| true);
+    if let Some(ground) = ground {
+        let inner = |cap: &mut Cap, below_m: f32| -> Vec<bool> {
+            cap.positions.iter_mut().skip(cap.rim).map(|p| ground.lay(p, below_m)).collect()
+        };
+        let laid = inner(cap, ground.standing_m);
+        let rim = cap.rim;
+        relax(cap, LAST_RELAXATIONS, |v| !laid[v - rim]);
+        inner(cap, 0.0);
+    }
 }
 
-/// Halves inner edges that are too long, the longest first, each triangle at most once.
-fn split(cap: &mut Cap, longest_m: f32) -> bool {
+/// Halves the inner edges that are to be (by their ends and their length), the longest first, each triangle at most once.
+fn split(cap: &mut Cap, is_to_be: impl Fn(&Cap, [u32; 2], f32) -> bool) -> bool {
     let length = |h: &Hinge| (cap.positions[h.ends[0] as usize] - cap.positions[h.ends[1] as usize]).norm();
-    let mut long: Vec<(f32, Hinge)> =
-        hinges(cap, &left_of(cap)).into_iter().map(|h| (length(&h), h)).filter(|(l, _)| *l > longest_m).collect();
+    let all = hinges(cap, &left_of(cap)).into_iter().map(|h| (length(&h), h));
+    let mut long: Vec<(f32, Hinge)> = all.filter(|(length_m, h)| is_to_be(cap, h.ends, *length_m)).collect();
     long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.ends.cmp(&y.1.ends)));
     let mut touched = vec![false; cap.triangles.len()];
     for (_, Hinge { triangles: [s, t], ends: [a, b], opposite: [c, d] }) in &long {
@@ -117,8 +129,8 @@ fn wants_flip(cap: &Cap, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
     angle(&c) + angle(&d) > std::f32::consts::PI + 1e-3 && first.dot(&second) > 0.0
 }
 
-/// Draws each inner vertex to the mean of its neighbours, in the order of their numbers.
-fn relax(cap: &mut Cap, times: usize) {
+/// Draws each inner vertex that is free to the mean of its neighbours, in the order of their numbers.
+fn relax(cap: &mut Cap, times: usize, is_free: impl Fn(usize) -> bool) {
     let mut neighbours = vec![Vec::new(); cap.positions.len()];
     for &[a, b, c] in &cap.triangles {
         // Around an inner vertex every neighbour is the next of exactly one triangle.
@@ -127,7 +139,8 @@ fn relax(cap: &mut Cap, times: usize) {
         neighbours[c as usize].push(a);
     }
     for _ in 0..times {
-        for (v, ring) in neighbours.iter().enumerate().skip(cap.rim).filter(|(_, ring)| !ring.is_empty()) {
+        let inner = neighbours.iter().enumerate().skip(cap.rim);
+        for (v, ring) in inner.filter(|(v, ring)| !ring.is_empty() && is_free(*v)) {
             let sum: nalgebra::Vector3<f32> = ring.iter().map(|&w| cap.positions[w as usize]).sum();
             cap.positions[v] = sum / ring.len() as f32;
         }

@@ -15,7 +15,7 @@ pub struct Sample {
     pub sigma_m: f32,
 }
 
-/// Why a point is not used.
+/// Why a point is not used, or a hole not closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, thiserror::Error)]
 pub enum Refused {
     /// NaN or infinite.
@@ -30,6 +30,9 @@ pub enum Refused {
     /// From a scan or a revision that is over.
     #[error("of an older scan or revision")]
     Old,
+    /// Of the surface, not a point: see [`crate::Config::close`].
+    #[error("hole left open: a cap over it would be larger than a third of what was measured")]
+    Hole,
 }
 
 const FARTHEST_M: f32 = 1000.0;

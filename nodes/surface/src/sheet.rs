@@ -16,6 +16,8 @@ pub struct Sheet {
     pub sigmas_m: Vec<f32>,
     /// Counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// So many of them, the first ones, were measured; `None`: all.
+    pub measured: Option<usize>,
 }
 
 impl Sheet {
@@ -106,6 +108,7 @@ impl Sheet {
     pub fn into_mesh(self, header: wire::Header) -> wire::Mesh {
         wire::Mesh {
             header,
+            measured: self.measured.unwrap_or(self.triangles.len()) as u32,
             vertices_m: self.positions.into_iter().map(Into::into).collect(),
             normals: self.normals.into_iter().map(Into::into).collect(),
             sigma_m: self.sigmas_m.into(),

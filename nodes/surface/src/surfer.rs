@@ -2,6 +2,8 @@
 
 use crate::clean::clean;
 use crate::grid::KeyHash;
+use crate::ground::Ground;
+use crate::holes;
 use crate::model::Model;
 use crate::sample::{Refused, Sample};
 use crate::scale::Scale;
@@ -9,7 +11,7 @@ use crate::sheet::Sheet;
 use crate::{Config, ConfigError};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
-use wire::{Cloud, Extent, Header, Mesh, Phase, Refusal};
+use wire::{Cloud, Extent, Header, Mesh, Phase, Refusal, TablePlane};
 
 /// Keeps a cloud and its surface up to date.
 #[derive(Debug, Clone)]
@@ -20,6 +22,8 @@ pub struct Surfer {
     places: HashMap<u32, u32, KeyHash>,
     refused: BTreeMap<Refused, u64>,
     model: Option<Model>,
+    /// On which the thing stands, when somebody found it.
+    table: Option<TablePlane>,
     /// Samples when the scale was last looked at.
     scaled_at: usize,
 }
@@ -38,6 +42,7 @@ impl Surfer {
             places: HashMap::default(),
             refused: BTreeMap::new(),
             model: None,
+            table: None,
             scaled_at: 0,
         })
     }
@@ -53,6 +58,7 @@ impl Surfer {
             Ordering::Equal => {}
         }
         self.header = cloud.header;
+        self.table = cloud.table.or(self.table);
         for point in cloud.points.iter() {
             match Sample::new(point.id, point.position_m, point.normal, point.sigma_m) {
                 Ok(sample) => self.put(sample),
@@ -69,12 +75,19 @@ impl Surfer {
         self.sew().into_mesh(self.header.derived())
     }
 
-    /// The surface, cleaned; its phase is `End`. It depends on the points alone, not on how they came.
+    /// The surface, cleaned and, if it is wanted so, closed; its phase is `End`. It depends on the points alone, not on how they came.
     pub fn final_mesh(&mut self) -> Mesh {
         self.measure();
         let mut sheet = self.sew();
         if let Some(model) = &self.model {
-            clean(&mut sheet, &self.config, model.grid().cell_m());
+            let grid = *model.grid();
+            let ground = self.table.and_then(|table| Ground::new(&table, grid.radius_m));
+            clean(&mut sheet, &self.config, grid.cell_m(), ground.as_ref());
+            if self.config.close {
+                sheet.measured = Some(sheet.triangles.len());
+                self.refuse(Refused::Hole, holes::close(&mut sheet, ground.as_ref()));
+                sheet.complete_normals();
+            }
         }
         sheet.into_mesh(Header { phase: Phase::End, ..self.header.derived() })
     }
@@ -100,10 +113,14 @@ impl Surfer {
     }
 
     fn refuse(&mut self, reason: Refused, count: u64) {
+        if count == 0 {
+            return;
+        }
         *self.refused.entry(reason).or_default() += count;
     }
 
     fn forget(&mut self) {
+        self.table = None;
         self.samples.clear();
         self.places.clear();
         self.model = None;

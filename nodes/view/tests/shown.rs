@@ -108,6 +108,7 @@ fn of_the_cloud_only_what_changed_is_sent_again() {
     let cloud = |extent, ids: std::ops::Range<u32>| Cloud {
         header: Header::default(),
         extent,
+        table: None,
         points: ids.map(ball).collect::<Bulk<_>>(),
         refused: Vec::new(),
     };

@@ -81,6 +81,9 @@ fn accuracy(report: &Report, end_mm: f64) -> String {
     if let Some(aligned) = &report.aligned {
         text.push_str(&tables::standing(aligned, report.comparison.as_ref()));
     }
+    if let Some(closed) = &report.closed {
+        text.push_str(&tables::closed(closed));
+    }
     if let Some(stated) = &report.stated {
         text.push_str(&tables::stated(stated));
     }

@@ -1,7 +1,7 @@
 //! The numbers, as tables and as the row of figures at the head of the page.
 
 use super::text::{count, escape, known, number, percent};
-use crate::{Aligned, BorderError, Report, Stage, StatedError};
+use crate::{Aligned, BorderError, Closed, Report, Stage, StatedError};
 use geometry::{Comparison, Completeness};
 use std::fmt::Write as _;
 
@@ -80,6 +80,31 @@ pub fn standing(aligned: &Aligned, as_it_stands: Option<&Comparison>) -> String 
             ("moved by", format!("{} mm", number(aligned.moved_mm))),
             ("turned by", format!("{} degrees", number(aligned.turned_deg))),
             ("root mean square where it stood", stood.unwrap_or_default()),
+        ],
+    )
+}
+
+/// What closes the model, and how far that is off.
+pub fn closed(closed: &Closed) -> String {
+    let is_closed = match closed.open_edges {
+        0 => "yes: every edge has two triangles".to_owned(),
+        open => format!("no: {} edges are open", count(open as u64)),
+    };
+    let caps = closed.caps_to_truth.map(|caps| {
+        let [rms, median, p95] = [caps.rms_mm, caps.median_mm, caps.p95_mm].map(number);
+        format!("rms {rms} mm, median {median} mm, 95 % within {p95} mm")
+    });
+    facts(
+        "The closed model (mesh.stl, model.glb, model.obj): caps close what nobody saw. The figures above are of what was \
+         measured (mesh.ply)",
+        &[
+            ("closed", is_closed),
+            ("of its area, nobody measured", percent(closed.unmeasured_share)),
+            ("from these caps to the truth", caps.unwrap_or_default()),
+            (
+                "from all of it to the truth",
+                closed.rms_mm.map(|rms| format!("rms {} mm", number(rms))).unwrap_or_default(),
+            ),
         ],
     )
 }

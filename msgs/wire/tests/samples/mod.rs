@@ -27,6 +27,7 @@ fn mesh() -> Mesh {
         normals: Bulk(vec![[0.0, 0.0, 1.0]; 3]),
         sigma_m: Bulk(vec![1e-4; 3]),
         triangles: Bulk(vec![[0, 1, 2]]),
+        measured: 1,
     }
 }
 
@@ -160,7 +161,8 @@ impl Sample for Cloud {
             id: 345,
             colour: [10, 20, 30, 255],
         };
-        Cloud { header: header(), extent: Extent::Whole, points: Bulk(vec![ball]), refused: refused() }
+        let table = Some(TablePlane { normal: [0.0, 0.6, 0.8], distance_m: 0.75 });
+        Cloud { header: header(), extent: Extent::Whole, table, points: Bulk(vec![ball]), refused: refused() }
     }
 }
 

@@ -174,6 +174,7 @@ pub fn mesh_of(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
         vertices_m: vertices.into(),
         normals: Vec::new().into(),
         sigma_m: Vec::new().into(),
+        measured: triangles.len() as u32,
         triangles: triangles.into(),
     }
 }
@@ -228,6 +229,7 @@ pub fn join(a: &Mesh, b: &Mesh) -> Mesh {
     let mut all = a.clone();
     all.vertices_m.extend(b.vertices_m.iter());
     all.triangles.extend(b.triangles.iter().map(|t| t.map(|i| i + first)));
+    all.measured = all.triangles.len() as u32;
     all
 }
 

@@ -97,7 +97,7 @@ proptest! {
         let mut surfer = Surfer::new(as_it_is()).unwrap();
         for (points, whole) in batches {
             let extent = if whole { Extent::Whole } else { Extent::Changes };
-            surfer.update(&Cloud { header: Header::default(), extent, points: points.into(), refused: Vec::new() });
+            surfer.update(&Cloud { header: Header::default(), extent, table: None, points: points.into(), refused: Vec::new() });
             surfer.live_mesh();
         }
         assert_clean(&surfer.final_mesh());

@@ -70,7 +70,7 @@ pub fn cloud(points: &[[f32; 3]], normals: &[[f32; 3]], extent: Extent) -> Cloud
         sigma_m: 0.0,
     };
     let points = points.iter().zip(normals).zip(0..).map(point).collect();
-    Cloud { header: Header::default(), extent, points, refused: Vec::new() }
+    Cloud { header: Header::default(), extent, table: None, points, refused: Vec::new() }
 }
 
 /// Without dropping or filling anything.
