@@ -102,6 +102,8 @@ fn tell(
 /// What the page shows of a scan whose truth nobody knows. What is no surface is not shown.
 struct Shown {
     model: Option<LoadedMesh>,
+    /// So many of its triangles were measured.
+    measured: usize,
     /// The surface before refinement, where there was one.
     before: Option<LoadedMesh>,
     surface: TriangleMesh,
@@ -117,6 +119,7 @@ impl Shown {
         let before = refined.and_then(|_| before::surface(plan, &harvest.placed).ok());
         Self {
             model: harvest.model.as_ref().map(report::painted).filter(is_surface),
+            measured: harvest.model.as_ref().map_or(0, |model| model.mesh.measured as usize),
             before: before.as_ref().map(plain).filter(is_surface),
             surface: harvest.mesh.as_ref().map(TriangleMesh::from).unwrap_or_default(),
             sigma_m: harvest.mesh.as_ref().map(|mesh| mesh.sigma_m.to_vec()).unwrap_or_default(),
@@ -128,6 +131,7 @@ impl Shown {
         let map = |values: &'_ [f32]| !values.is_empty() && self.surface.check().is_ok();
         Exhibits {
             model: self.model.as_ref(),
+            measured: Some(self.measured),
             before: self.before.as_ref(),
             stated: map(&self.sigma_m).then_some((&self.surface, &self.sigma_m)),
             residual: map(&self.residuals_m).then_some((&self.surface, &self.residuals_m)),

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+use geometry::TriangleMesh;
+use std::collections::BTreeMap;
 use std::path::Path;
 use system_tests::{limn, lost, number, report, same_bytes, succeed};
 
@@ -55,6 +57,12 @@ fn a_tracker_that_is_3_degrees_wrong_gives_a_cow_that_is_not() {
     let without = number(&told, "/refinement/without/comparison/model_to_truth/rms_mm");
     assert!(refined < 0.4, "{refined} mm rms");
     assert!(without > 5.0, "the tracker alone would give {without} mm rms: is this the paper's tracker?");
+    assert_eq!(told.pointer("/closed/watertight").and_then(serde_json::Value::as_bool), Some(true));
+    assert!(number(&told, "/closed/unmeasured_share") < 0.3 && number(&told, "/closed/caps_to_truth/rms_mm") < 3.0);
+    // To print and to show it is closed; what was measured is open below.
+    for (file, closed) in [("mesh.stl", true), ("model.glb", true), ("model.obj", true), ("mesh.ply", false)] {
+        assert_eq!(welded(&out.join(file)).open_edges() == 0, closed, "{file}");
+    }
 
     // The refinement alone, on the recording, comes to the same.
     let alone = folder.path().join("alone");
@@ -63,6 +71,18 @@ fn a_tracker_that_is_3_degrees_wrong_gives_a_cow_that_is_not() {
         assert!(alone.join(file).metadata().is_ok_and(|file| file.len() > 0), "{file} is missing or empty");
     }
     same_bytes(&out, &alone, "mesh.ply");
+}
+
+/// A mesh whose vertices at one place are one: a texture wants a vertex for each of its charts.
+fn welded(path: &Path) -> TriangleMesh {
+    let mut mesh = formats::mesh::read_z_up(path).unwrap().mesh;
+    let mut places = BTreeMap::new();
+    let place: Vec<u32> = (0..)
+        .zip(&mesh.vertices)
+        .map(|(v, p)| *places.entry(<[f32; 3]>::from(*p).map(|c| (c + 0.0).to_bits())).or_insert(v))
+        .collect();
+    mesh.triangles.iter_mut().flatten().for_each(|v| *v = place[*v as usize]);
+    mesh
 }
 
 #[test]

@@ -41,5 +41,5 @@ pub use render::render;
 pub use seen::{Gate, seen_mask};
 pub use stated::{StatedError, stated_error};
 pub use summary::{Aligned, Counts, FrameError, Machine, Observed, Refined, Refused, Report, Run, Stage, Time};
-pub use view::{View, four_views};
+pub use view::{View, four_views, four_views_from_below};
 pub use write::{Exhibits, PageError};

@@ -14,6 +14,8 @@ pub struct View {
 
 const AZIMUTHS_DEG: [f64; 4] = [-55.0, 35.0, 125.0, 215.0];
 const ELEVATION_DEG: f64 = 24.0;
+/// From there one sees what stood on the table.
+const BELOW_DEG: f64 = -40.0;
 /// In radii of the thing: far enough that near parts do not look swollen.
 const DISTANCE: f64 = 7.0;
 /// The share of the picture that the thing fills.
@@ -22,10 +24,19 @@ const FILL: f64 = 0.94;
 /// Four views from all sides, a little from above (z up), at one scale, in each of which the mesh fills the picture as far
 /// as its largest view allows. Empty for a mesh without vertices.
 pub fn four_views(mesh: &TriangleMesh, width: u32, height: u32) -> Vec<View> {
+    views_at(ELEVATION_DEG, mesh, width, height)
+}
+
+/// The same from below.
+pub fn four_views_from_below(mesh: &TriangleMesh, width: u32, height: u32) -> Vec<View> {
+    views_at(BELOW_DEG, mesh, width, height)
+}
+
+fn views_at(elevation_deg: f64, mesh: &TriangleMesh, width: u32, height: u32) -> Vec<View> {
     let Some([low, high]) = mesh.bounds().map(|b| b.map(|p| p.map(f64::from))) else { return Vec::new() };
     let middle = nalgebra::center(&low, &high);
     let radius = (0.5 * (high - low).norm()).max(1e-6);
-    let standing = AZIMUTHS_DEG.map(|azimuth| stand(&middle, DISTANCE * radius, azimuth));
+    let standing = AZIMUTHS_DEG.map(|azimuth| stand(&middle, DISTANCE * radius, [azimuth, elevation_deg]));
     let boxes = standing.map(|camera_from_world| ideal_bounds(mesh, &camera_from_world));
     let fits = |[[left, top], [right, bottom]]: [[f64; 2]; 2]| {
         let across = f64::from(width) / (right - left).max(1e-9);
@@ -55,8 +66,8 @@ impl View {
 }
 
 /// camera_from_world of a camera that looks at `target`, with the world's z upright in the picture.
-fn stand(target: &Point3<f64>, distance_m: f64, azimuth_deg: f64) -> Isometry3<f64> {
-    let (azimuth, elevation) = (azimuth_deg.to_radians(), ELEVATION_DEG.to_radians());
+fn stand(target: &Point3<f64>, distance_m: f64, direction_deg: [f64; 2]) -> Isometry3<f64> {
+    let [azimuth, elevation] = direction_deg.map(f64::to_radians);
     let towards = Vector3::new(elevation.cos() * azimuth.cos(), elevation.cos() * azimuth.sin(), elevation.sin());
     let forward = -towards;
     let right = forward.cross(&Vector3::z()).normalize();

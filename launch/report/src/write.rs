@@ -11,6 +11,8 @@ use std::path::Path;
 pub struct Exhibits<'a> {
     /// What came out, in the world (see [`crate::painted`]).
     pub model: Option<&'a LoadedMesh>,
+    /// So many of the model's triangles, the first ones, were measured; `None`: all.
+    pub measured: Option<usize>,
     /// The surface with the standard deviation that each vertex states, in metres.
     pub stated: Option<(&'a TriangleMesh, &'a [f32])>,
     /// The surface with how far the points about each vertex lie off it (rms), in metres; NaN where there are none.

@@ -1,9 +1,9 @@
 //! The page and the JSON, as a reader meets them.
 
 use formats::mesh::LoadedMesh;
-use geometry::{TriangleMesh, compare};
+use geometry::{TriangleMesh, compare, distances_to};
 use nalgebra::Point3;
-use report::{BorderError, Exhibits, Machine, PageError, Refused, Report, Stage, four_views, render};
+use report::{BorderError, Exhibits, Machine, PageError, Refused, Report, Stage, caps, closed, four_views, render};
 
 /// A tetrahedron of 40 mm, moved by `shift_m` along x.
 fn tetrahedron(shift_m: f32) -> LoadedMesh {
@@ -64,6 +64,38 @@ fn borders_of_colour_are_told_on_the_page_and_in_the_json() {
     let json = serde_json::to_string(&report).expect("plain numbers");
     assert_eq!(serde_json::from_str::<Report>(&json).expect("its own words").borders, Some(borders));
     assert!(!page(&full(), &Exhibits::default()).contains("Borders between"));
+}
+
+#[test]
+fn what_nobody_measured_is_told_apart_and_held_against_the_truth() {
+    // Three of the four faces were measured; the fourth, which closes it, stands 0.1 mm off.
+    let (model, truth) = (tetrahedron(1e-4), tetrahedron(0.0));
+    let triangles = model.mesh.triangles.clone();
+    let surface = wire::Mesh {
+        header: wire::Header::default(),
+        vertices_m: model.mesh.vertices.iter().map(|p| (*p).into()).collect(),
+        normals: vec![].into(),
+        sigma_m: vec![].into(),
+        triangles: triangles.into(),
+        measured: 3,
+    };
+    let told = closed(&surface).expect("a surface");
+    // The slanted face has sqrt(3) / (3 + sqrt(3)) of the area, and stands 0.1 / sqrt(3) mm off.
+    assert!(told.watertight && told.open_edges == 0 && (told.unmeasured_share - 0.3660).abs() < 1e-3, "{told:?}");
+    let caps = distances_to(&caps(&surface), &truth.mesh, 1).expect("two surfaces");
+    assert!((caps.rms_mm - 0.0577).abs() < 2e-3, "{caps:?}");
+    let measured = compare(&TriangleMesh::from(&surface.without_caps()), &truth.mesh, None, 1).expect("two surfaces");
+    let told = told.against(Some(caps), &measured.model_to_truth);
+    let whole = compare(&model.mesh, &truth.mesh, None, 1).expect("two surfaces").model_to_truth.rms_mm;
+    assert!((told.rms_mm.expect("it has a truth") - whole).abs() < 2e-3, "{told:?} {whole}");
+    let report = Report { closed: Some(told), ..full() };
+    let exhibits = Exhibits { model: Some(&model), measured: Some(3), truth: Some(&truth), ..Exhibits::default() };
+    let html = page(&report, &exhibits);
+    assert_eq!(html.matches("data:image/png;base64,").count(), 20, "a row more, from below");
+    assert!(html.contains("every edge has two triangles") && html.contains("nobody measured"));
+    let open = closed(&surface.without_caps()).expect("a surface");
+    assert!(!open.watertight && open.open_edges == 3 && open.unmeasured_share == 0.0);
+    assert!(page(&Report { closed: Some(open), ..full() }, &Exhibits::default()).contains("no: 3 edges are open"));
 }
 
 #[test]

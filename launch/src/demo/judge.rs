@@ -67,6 +67,7 @@ pub fn judge(
     report.write_json(&out.join("report.json"))?;
     let exhibits = Exhibits {
         model: model.as_ref().filter(|model| model.mesh.check().is_ok()),
+        measured: harvest.model.as_ref().map(|model| model.mesh.measured as usize),
         before: before.as_ref().filter(|before| before.mesh.check().is_ok()),
         stated: laid.as_ref().filter(|_| report.stated.is_some()).map(|mesh| (mesh, sigma_m)),
         residual: laid.as_ref().filter(|_| !residuals_m.is_empty()).map(|mesh| (mesh, &*residuals_m)),

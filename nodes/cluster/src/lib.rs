@@ -16,8 +16,8 @@
 //! mean sigma, over the root of their count: points are taken as independent, so an error of the pose that all points of
 //! a picture share is averaged too well where few pictures saw the ball. Scans bring no colour, so there is none.
 //!
-//! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`geometry::Table`]): what the paper
-//! edited by hand.
+//! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`geometry::Table`]), which the paper
+//! edited by hand, and tells where it is ([`wire::TablePlane`]): nothing of the thing is below it.
 //!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
 //! 0.8 mm). Memory: about 1 kB a ball on a surface, and 24 bytes for each point that a later ball might still take over

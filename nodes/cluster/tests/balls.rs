@@ -1,6 +1,6 @@
 //! What a ball says of itself, and what is refused.
 
-use cluster::{BallClusterer, Config, ConfigError};
+use cluster::{BallClusterer, Config, ConfigError, Table};
 use proptest::prelude::*;
 use wire::{Extent, Header, Phase, RigidPose, Scan, ScanPoint};
 
@@ -158,6 +158,30 @@ fn balls_are_as_large_as_the_places_are_uncertain_and_shrink_when_a_revision_kno
     assert!((ratio / expected - 1.0).abs() < 0.2, "{exact} balls, then {vague}: {ratio} times fewer, not {expected}");
     clusterer.insert(&scan(2, dome));
     assert_eq!(clusterer.whole().points.len(), exact);
+}
+
+#[test]
+fn the_table_that_was_taken_away_is_told_with_the_cloud() {
+    // A dome on a table at the height of 20 mm, a plane of 300 mm.
+    let raised = |p: ScanPoint| point([p.position_m[0], p.position_m[1], p.position_m[2] + 0.02]);
+    let on_table = |i: usize| point([0.15 * noise(i, 3), 0.15 * noise(i, 4), 0.02 + NOISE_M * noise(i, 5)]);
+    let beside = |p: &ScanPoint| p.position_m[0].hypot(p.position_m[1]) > RADIUS_M;
+    let mut points: Vec<ScanPoint> = dome(60_000).into_iter().map(raised).collect();
+    points.extend((0..120_000).map(on_table).filter(beside));
+    let cloud = |table| {
+        let mut clusterer = BallClusterer::new(Config { ball_radius_m: 2e-3, table, ..Config::default() }).unwrap();
+        clusterer.insert(&scan(0, points.clone()));
+        assert_eq!(clusterer.changes().table, None);
+        clusterer.whole()
+    };
+    let kept = cloud(Table::Keep);
+    assert_eq!(kept.table, None);
+    let thing = cloud(Table::Remove);
+    let table = thing.table.unwrap();
+    assert!(table.normal[2] > 0.99999 && (table.distance_m - 0.02).abs() < 2e-5, "{table:?}");
+    assert!(thing.points.len() < kept.points.len() && thing.points.iter().all(|ball| ball.position_m[2] > 0.02));
+    let refused = thing.refused.iter().find(|refusal| refusal.reason == "ball of the table").unwrap();
+    assert_eq!(refused.count as usize, kept.points.len() - thing.points.len());
 }
 
 #[test]

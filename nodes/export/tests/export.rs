@@ -82,6 +82,22 @@ fn only_the_final_surface_is_written() {
 }
 
 #[test]
+fn what_was_measured_and_what_closes_it_go_to_files_of_their_own() {
+    let (_folder, exporter) = exporter();
+    let mut capped = square(Phase::End);
+    capped.vertices_m.push([0.05, 0.05, 0.4]);
+    capped.normals.push([0.0, 0.0, -1.0]);
+    capped.sigma_m = vec![1e-5, 1e-5, 1e-5, 1e-5, 0.06].into();
+    capped.triangles.extend([[1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]]);
+    let written = exporter.mesh(&capped).unwrap();
+    let [ply, stl] = [0, 1].map(|k: usize| mesh::read(&written[k].path).unwrap().mesh);
+    assert_eq!((ply.vertices.len(), ply.triangles.len(), ply.open_edges()), (4, 2, 4), "{}", written[0]);
+    assert_eq!((stl.vertices.len(), stl.triangles.len(), stl.open_edges()), (5, 6, 0), "{}", written[1]);
+    let model = exporter.model(&Model { mesh: square(Phase::End), ..painted(Phase::End) }).unwrap();
+    assert!(model[0].to_string().contains("2 triangles"));
+}
+
+#[test]
 fn the_painted_surface_lies_where_it_was_scanned_in_every_format() {
     let (_folder, exporter) = exporter();
     let written = exporter.model(&painted(Phase::End)).unwrap();

@@ -22,6 +22,7 @@
 //!    robust mean taken: gleams, shadows and what strayed there by an error of the pose do not count.
 //! 6. The 1-2-1 / 2-4-2 / 1-2-1 blur, within charts; then colour spreads into cells that were not seen, across seams too.
 //!    The fourth byte of a texel says it: 255 seen, 85 filled, 0 no colour (grey) or no cell.
+//!    So it does into the caps that close the surface ([`wire::Mesh::measured`]): no picture colours those, and they hide nothing.
 //! 7. One gain for all channels puts `white_percentile` of the seen cells at `white_albedo`.
 //!
 //! Before they are painted, the pictures are moved a little until they agree on the colours ([`Painter::settle`]; Zhou &

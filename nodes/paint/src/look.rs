@@ -29,11 +29,15 @@ pub enum CellRefusal {
     /// The lamp does not shine there.
     #[error("in the lamp's shadow")]
     Unlit,
+    /// It lies on a cap: where that surface really is nobody measured, and so not what the picture shows there.
+    #[error("on a cap that nobody measured")]
+    Guessed,
 }
 
 impl CellRefusal {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::OffAxis, Self::Steep, Self::Hidden, Self::NearEdge, Self::Saturated, Self::Unlit];
+    pub const ALL: [Self; 7] =
+        [Self::OffAxis, Self::Steep, Self::Hidden, Self::NearEdge, Self::Saturated, Self::Unlit, Self::Guessed];
 }
 
 /// A gleam counts this much.

@@ -116,9 +116,11 @@ impl Painter {
         let Config { chart_degrees, texture_side_max, samples_per_cell, .. } = self.config;
         let atlas = Atlas::build(&surface, self.config.cell_m(), chart_degrees, texture_side_max)?;
         let samples = vec![Sample::EMPTY; atlas.texels.len() * samples_per_cell];
+        let mesh = Mesh { normals: surface.normals.iter().map(|&n| n.into()).collect(), ..mesh.clone() };
         self.surface = Some(Surface {
-            mesh: Mesh { normals: surface.normals.iter().map(|&n| n.into()).collect(), ..mesh.clone() },
-            occlusion: Occlusion::new(&surface),
+            // A guess hides nothing.
+            occlusion: Occlusion::new(&TriangleMesh::from(&mesh.without_caps())),
+            mesh,
             atlas,
             samples,
             pictures: 0,
@@ -181,13 +183,14 @@ impl Painter {
         let Some(surface) = &mut self.surface else { return FrameReport::default() };
         surface.occlusion.see(&self.region.camera, camera_from_world, self.region.corner_rad, &edge);
         let look = Look::new(&self.rules, &self.region, picture, &surface.occlusion, camera_from_world);
-        let per_cell = self.config.samples_per_cell;
+        let (per_cell, measured) = (self.config.samples_per_cell, surface.mesh.measured);
         let chunks = surface.samples.par_chunks_mut(CHUNK * per_cell).zip(surface.atlas.texels.par_chunks(CHUNK));
         let counts = chunks.enumerate().map(|(chunk, (samples, texels))| {
             let mut coloured = 0;
             let mut refused = [0; CellRefusal::ALL.len()];
             for (at, (kept, texel)) in samples.chunks_exact_mut(per_cell).zip(texels).enumerate() {
-                match look.at((chunk * CHUNK + at) as u32, texel) {
+                let is_guess = texel.triangle >= measured;
+                match if is_guess { Err(CellRefusal::Guessed) } else { look.at((chunk * CHUNK + at) as u32, texel) } {
                     Ok(sample) => {
                         offer(kept, sample);
                         coloured += 1;

@@ -167,3 +167,22 @@ fn grey_and_yuyv_pictures_are_read_in_place() {
         }
     }
 }
+
+#[test]
+fn a_cap_hides_nothing_and_is_coloured_by_no_picture() {
+    // A white plate, and before it what nobody measured: nothing need be there.
+    let world = World::of(vec![(PLATE, white)]);
+    let plate = plate_mesh([-0.1, -0.1], [0.1, 0.1], 0.0, 40);
+    let cap = plate_mesh([-0.02, -0.02], [0.02, 0.02], 0.05, 8);
+    let capped = Mesh { measured: plate.measured, ..join(&plate, &cap) };
+    let pose = look_at(EYE, [0.0; 3]);
+    let frame = world.frame(&CAMERA, &pose, 0);
+    let (mut without, mut with) = (painter(&plate), painter(&capped));
+    let coloured = without.frame(&frame, &pose).unwrap().coloured;
+    let report = with.frame(&frame, &pose).unwrap();
+    assert_eq!(report.coloured, coloured);
+    assert!(count(&report.refused, "on a cap") > 1000);
+    assert!(seen(&with).iter().all(|(p, _)| p.z < 1e-3));
+    assert_eq!(with.model().0.mesh.measured, plate.measured);
+    assert_eq!(count(&with.model().1.refused, "on a cap"), count(&report.refused, "on a cap"));
+}

@@ -19,6 +19,9 @@ pub struct Config {
     /// measured ([`wire::Mesh::measured`]). One that would be larger than a third of what was measured is left open, but where
     /// the thing stands on the table with it.
     pub close: bool,
+    /// Of a thing that stands on a table: what nobody saw and a cap has nearer to the table than this is taken to stand on it.
+    /// The line in the corner between both is lost, or not told from that on the table.
+    pub standing_mm: f64,
     /// In the final mesh, loose pieces whose bounding box has a shorter diagonal than this are dropped, and those with less
     /// area than a quarter of its square.
     pub drop_islands_mm: f64,
@@ -33,6 +36,7 @@ impl Default for Config {
             radius_mm: 0.0,
             fill_holes_mm: 10.0,
             close: false,
+            standing_mm: 3.0,
             drop_islands_mm: 10.0,
             live_every_s: 1.0,
         }
@@ -61,6 +65,7 @@ impl Config {
         automatic_or("cell_mm", self.cell_mm, 0.02, 1000.0, "0 (automatic) or 0.02 to 1000 mm")?;
         automatic_or("radius_mm", self.radius_mm, 0.05, 1000.0, "0 (automatic) or 0.05 to 1000 mm")?;
         automatic_or("fill_holes_mm", self.fill_holes_mm, 0.0, 1e6, "0 (none) to 1000000 mm")?;
+        automatic_or("standing_mm", self.standing_mm, 0.0, 1e3, "0 to 1000 mm")?;
         automatic_or("drop_islands_mm", self.drop_islands_mm, 0.0, 1e6, "0 (none) to 1000000 mm")?;
         automatic_or("live_every_s", self.live_every_s, 0.05, 1e6, "0 (none) or 0.05 s and more")?;
         let ratio = self.radius_mm / self.cell_mm;
@@ -73,6 +78,10 @@ impl Config {
 
     pub(crate) fn cell_m(&self) -> Option<f64> {
         (self.cell_mm > 0.0).then_some(self.cell_mm * METRES_PER_MM)
+    }
+
+    pub(crate) fn standing_m(&self) -> f32 {
+        (self.standing_mm * METRES_PER_MM) as f32
     }
 
     pub(crate) fn radius_m(&self) -> Option<f64> {

@@ -3,20 +3,23 @@
 use nalgebra::Vector3;
 use wire::TablePlane;
 
+/// Farther from the origin nothing is scanned.
+const FARTHEST_M: f64 = 2000.0;
+
 /// A plane that nothing of the thing is below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
     normal: Vector3<f64>,
     distance_m: f64,
-    /// What nobody saw and is no higher stands on it: so near to the table the line is not seen, or not told from its own.
+    /// What nobody saw and is no higher stands on it.
     pub standing_m: f32,
 }
 
 impl Ground {
-    /// `None` when it is no plane.
+    /// `None` when it is no plane, or one that no scan came near.
     pub fn new(table: &TablePlane, standing_m: f32) -> Option<Self> {
         let normal = Vector3::from(table.normal);
-        let is_plane = (normal.norm() - 1.0).abs() < 1e-3 && table.distance_m.is_finite();
+        let is_plane = (normal.norm() - 1.0).abs() < 1e-3 && table.distance_m.abs() < FARTHEST_M;
         is_plane.then_some(Self { normal, distance_m: table.distance_m, standing_m })
     }
 

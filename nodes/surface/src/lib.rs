@@ -21,6 +21,11 @@
 //!    it changes faster than distance can have no triangles.
 //! 5. The final mesh is cleaned: bow-ties cut, islands dropped, holes filled by a membrane, slivers collapsed or flipped, and
 //!    saws along sharp rims smoothed. No edge has more than two triangles, and each vertex one fan.
+//! 6. If it is wanted so ([`Config::close`]), what is left open is closed, and told apart from what was measured
+//!    ([`wire::Mesh::measured`]): the triangulation of the rim with the least area (Barequet and Sharir 1995), refined as Liepa
+//!    (2003) does and drawn tight. No cap goes below the table that the cloud tells of, and what nobody saw within
+//!    `standing_mm` of it stands on it: soles are flat. A cap larger than a third of what was measured of its piece is refused
+//!    and counted, unless the piece stands on the table with it: a wall has no back, and a half no other half, that anyone knows.
 //!
 //! # Scales
 //!
@@ -32,7 +37,8 @@
 //! * Edges sharper than R are rounded. Sheets back to back may be as near as two cells; seen from the same side, as three.
 //! * The surface ends about 0.3 R past the last samples. A point of the cloud that has fewer than five neighbours is not used.
 //! * The sigma holds what the residuals and the samples' own sigmas say; an error of the trajectory that moves a whole region is
-//!   not in it. Filled holes have the radius of the hole for their sigma, since nothing was measured there.
+//!   not in it. Caps have the radius of the hole for their sigma, since nothing was measured there; where they run through
+//!   a ragged rim they may cut the surface.
 //! * [`Surfer::live_mesh`] is not cleaned, and its cell follows the cloud as it grows; the final mesh depends on the points
 //!   alone, bit for bit, however they came and on however many threads.
 //!

@@ -80,9 +80,9 @@ impl Surfer {
         self.measure();
         let mut sheet = self.sew();
         if let Some(model) = &self.model {
-            let grid = *model.grid();
-            let ground = self.table.and_then(|table| Ground::new(&table, grid.radius_m));
-            clean(&mut sheet, &self.config, grid.cell_m(), ground.as_ref());
+            let cell_m = model.grid().cell_m();
+            let ground = self.table.and_then(|table| Ground::new(&table, self.config.standing_m()));
+            clean(&mut sheet, &self.config, cell_m, ground.as_ref());
             if self.config.close {
                 sheet.measured = Some(sheet.triangles.len());
                 self.refuse(Refused::Hole, holes::close(&mut sheet, ground.as_ref()));

@@ -3,7 +3,7 @@
 use super::chart;
 use crate::albedo::albedo;
 use crate::data_uri::png_uri;
-use crate::{Exhibits, PageError, View, error_map, four_views, render};
+use crate::{Exhibits, PageError, View, error_map, four_views, four_views_from_below, render};
 use formats::mesh::LoadedMesh;
 use geometry::{METRES_PER_MM, TriangleMesh};
 use image::RgbaImage;
@@ -12,8 +12,10 @@ const WIDTH: u32 = 420;
 const HEIGHT: u32 = 340;
 /// Albedo of a surface without colours.
 const PLASTER: [f32; 3] = [0.62, 0.60, 0.56];
+/// Albedo of what nobody measured.
+const ORANGE: [f32; 3] = [0.80, 0.33, 0.06];
 
-/// The pictures, row by row: truth, before refinement, model, shape alone, error map, residuals, expected error; what is
+/// The pictures, row by row: truth, before refinement, model, shape alone, what of it was guessed, error map, residuals, expected error; what is
 /// missing is left out. The views are chosen by the truth, or by the model when there is none.
 pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError> {
     let Some(framing) = exhibits.truth.or(exhibits.model) else { return Ok(String::new()) };
@@ -29,6 +31,10 @@ pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError
     if let Some(model) = exhibits.model {
         rows.push_str(&row("Model", "", &painted(model, &views))?);
         rows.push_str(&row("Shape", "The model without its colours.", &plaster(&model.mesh, &views))?);
+        if let Some(measured) = exhibits.measured.filter(|&measured| measured < model.mesh.triangles.len()) {
+            let caption = "The shape from below: over what is orange nobody measured anything; it closes the model.";
+            rows.push_str(&row("Guessed", caption, &guessed(&model.mesh, measured))?);
+        }
     }
     rows.push_str(&maps(exhibits, &views, end_mm)?);
     Ok(format!("<section class=\"gallery\">{rows}</section>"))
@@ -79,6 +85,11 @@ fn painted(surface: &LoadedMesh, views: &[View]) -> Vec<RgbaImage> {
 
 fn plaster(mesh: &TriangleMesh, views: &[View]) -> Vec<RgbaImage> {
     views.iter().map(|view| render(mesh, view, |_, _| PLASTER)).collect()
+}
+
+fn guessed(mesh: &TriangleMesh, measured: usize) -> Vec<RgbaImage> {
+    let colour = |triangle: u32, _| if (triangle as usize) < measured { PLASTER } else { ORANGE };
+    four_views_from_below(mesh, WIDTH, HEIGHT).iter().map(|view| render(mesh, view, colour)).collect()
 }
 
 /// Sizes (never negative) of the vertices as colours; a triangle takes those of its corners that have one.

@@ -42,7 +42,7 @@ impl Painter {
         let Some(mut surface) = self.surface.take() else {
             return (Points::default(), shots.iter().map(|(_, pose)| View::blind(pose)).collect());
         };
-        let texels = points_on(&TriangleMesh::from(&surface.mesh));
+        let texels = points_on(&TriangleMesh::from(&surface.mesh.without_caps()));
         let mut kept = vec![Sample::EMPTY; texels.len() * self.config.samples_per_cell];
         let seen: Vec<Vec<InLight>> =
             shots.iter().map(|shot| self.in_light(&mut surface, shot, prior, &texels, &mut kept)).collect();

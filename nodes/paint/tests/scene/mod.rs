@@ -221,6 +221,7 @@ pub fn sphere_mesh(centre: [f32; 3], radius: f32, n: u32) -> Mesh {
             t.swap(1, 2);
         }
     }
+    all.measured = all.triangles.len() as u32;
     all
 }
 

@@ -4,7 +4,7 @@ use crate::animal::Random;
 use crate::check::{as_it_is, assert_clean};
 use proptest::prelude::*;
 use surface::{Config, Surfer, surface_from_points};
-use wire::{Cloud, CloudPoint, Extent, Header};
+use wire::{Cloud, CloudPoint, Extent, Header, TablePlane};
 
 fn triangles(points: &[[f32; 3]], normals: Option<&[[f32; 3]]>) -> usize {
     surface_from_points(points, normals, as_it_is()).unwrap().0.triangles.len()
@@ -93,11 +93,13 @@ proptest! {
     #[test]
     fn hostile_clouds_give_a_clean_mesh_or_none(
         batches in prop::collection::vec((prop::collection::vec(point(), 0..200), any::<bool>()), 1..4),
+        table in prop::option::of((prop_oneof![Just([0.0, 0.0, 1.0]), any::<[f64; 3]>()], prop_oneof![-0.02..0.02, any::<f64>()])),
     ) {
-        let mut surfer = Surfer::new(as_it_is()).unwrap();
+        let table = table.map(|(normal, distance_m)| TablePlane { normal, distance_m });
+        let mut surfer = Surfer::new(Config { close: true, ..as_it_is() }).unwrap();
         for (points, whole) in batches {
             let extent = if whole { Extent::Whole } else { Extent::Changes };
-            surfer.update(&Cloud { header: Header::default(), extent, table: None, points: points.into(), refused: Vec::new() });
+            surfer.update(&Cloud { header: Header::default(), extent, table, points: points.into(), refused: Vec::new() });
             surfer.live_mesh();
         }
         assert_clean(&surfer.final_mesh());

@@ -5,5 +5,6 @@
 mod animal;
 mod bad_input;
 mod check;
+mod closed;
 mod mesh;
 mod shapes;
