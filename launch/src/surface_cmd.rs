@@ -13,6 +13,7 @@ use wire::{Cloud, CloudPoint, Extent, Header, Phase};
 pub const HELP: &str = "Examples:
   limn surface cloud.ply -o mesh.ply
   limn surface points.xyz --unit mm -o mesh.stl --set fill_holes_mm=5
+  limn surface cloud.ply -o closed.stl --set close=true
 Normals in the file tell the sides; without them the sides are found from the points. What is written is in metres.";
 
 /// The arguments.
