@@ -4,12 +4,12 @@ use crate::cap::{Cap, Edges, edge};
 use crate::grid::KeyHash;
 use crate::ground::Ground;
 use crate::sheet::Sheet;
-use crate::topology::{pieces, rims};
+use crate::topology::{area_m2, rims};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-/// A cap larger than this share of what was measured of its piece would be more of a guess than of a model.
+/// A cap larger than this share of what was measured would make more of a guess than of a model.
 const LARGEST: f32 = 1.0 / 3.0;
 
 /// Fills every hole whose rim is at most pi times `largest_m` long.
@@ -19,15 +19,15 @@ pub fn fill(sheet: &mut Sheet, largest_m: f64, ground: Option<&Ground>) {
     sew(sheet, caps, ground);
 }
 
-/// Closes every hole that is left, whatever its size, but those over which the cap would be larger than a third of what was
-/// measured of the piece: a wall, or a thing of which one side was seen. A thing that stands on the table with all of such
-/// a rim is closed all the same. Returns how many were left open.
+/// Closes every hole that is left, whatever its size, but those over which the cap would be larger than a third of all that
+/// was measured: a wall, or a thing of which one side was seen. A thing that stands on the table with all of such a rim is
+/// closed all the same. Returns how many were left open.
 pub fn close(sheet: &mut Sheet, ground: Option<&Ground>) -> u64 {
-    let (mut pieces, areas_m2) = pieces(sheet);
-    let (guessed, left_open): (Vec<_>, Vec<_>) = over_all(sheet).into_iter().partition(|(rim, cap)| {
-        let measured_m2 = areas_m2[pieces.find(rim[0]) as usize];
-        cap.area_m2() <= LARGEST * measured_m2 || ground.is_some_and(|ground| stands(cap, ground))
-    });
+    let measured_m2: f32 = sheet.triangles.iter().map(|&triangle| area_m2(&sheet.positions, triangle)).sum();
+    let is_small = |cap: &Cap| cap.area_m2() <= LARGEST * measured_m2;
+    let (guessed, left_open): (Vec<_>, Vec<_>) = over_all(sheet)
+        .into_iter()
+        .partition(|(_, cap)| is_small(cap) || ground.is_some_and(|ground| stands(cap, ground)));
     sew(sheet, guessed, ground);
     left_open.len() as u64
 }

@@ -24,8 +24,8 @@
 //! 6. If it is wanted so ([`Config::close`]), what is left open is closed, and told apart from what was measured
 //!    ([`wire::Mesh::measured`]): the triangulation of the rim with the least area (Barequet and Sharir 1995), refined as Liepa
 //!    (2003) does and drawn tight. No cap goes below the table that the cloud tells of, and what nobody saw within
-//!    `standing_mm` of it stands on it: soles are flat. A cap larger than a third of what was measured of its piece is refused
-//!    and counted, unless the piece stands on the table with it: a wall has no back, and a half no other half, that anyone knows.
+//!    `standing_mm` of it stands on it: soles are flat. A cap larger than a third of all that was measured is refused
+//!    and counted, unless the thing stands on the table with it: a wall has no back, and a half no other half, that anyone knows.
 //!
 //! # Scales
 //!

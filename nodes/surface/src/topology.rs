@@ -96,28 +96,22 @@ pub fn area_m2(positions: &[Vector3<f32>], triangle: [u32; 3]) -> f32 {
     0.5 * (b - a).cross(&(c - a)).norm()
 }
 
-/// The pieces that hang together, as sets of vertices, and the area of each, at the vertex that stands for it.
-pub fn pieces(sheet: &Sheet) -> (Sets, Vec<f32>) {
+/// Drops the pieces whose bounding box has a shorter diagonal than this, or that have less area than a quarter of its square.
+pub fn drop_islands(sheet: &mut Sheet, shortest_m: f32) {
     let mut pieces = Sets::new(sheet.positions.len());
     for &[a, b, c] in &sheet.triangles {
         pieces.join(a, b);
         pieces.join(b, c);
     }
-    let mut areas_m2 = vec![0.0; sheet.positions.len()];
-    for &triangle in &sheet.triangles {
-        areas_m2[pieces.find(triangle[0]) as usize] += area_m2(&sheet.positions, triangle);
-    }
-    (pieces, areas_m2)
-}
-
-/// Drops the pieces whose bounding box has a shorter diagonal than this, or that have less area than a quarter of its square.
-pub fn drop_islands(sheet: &mut Sheet, shortest_m: f32) {
-    let (mut pieces, areas_m2) = pieces(sheet);
     let nowhere = [Vector3::repeat(f32::INFINITY), Vector3::repeat(f32::NEG_INFINITY)];
     let mut boxes = vec![nowhere; sheet.positions.len()];
     for (v, p) in (0..).zip(&sheet.positions) {
         let [low, high] = &mut boxes[pieces.find(v) as usize];
         (*low, *high) = (low.inf(p), high.sup(p));
+    }
+    let mut areas_m2 = vec![0.0; sheet.positions.len()];
+    for &triangle in &sheet.triangles {
+        areas_m2[pieces.find(triangle[0]) as usize] += area_m2(&sheet.positions, triangle);
     }
     sheet.triangles.retain(|triangle| {
         let piece = pieces.find(triangle[0]) as usize;
