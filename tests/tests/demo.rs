@@ -79,7 +79,8 @@ fn is_watertight(path: &Path) -> bool {
     let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
     for t in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(t).map(|p| <[f32; 3]>::from(p).map(|x| (x + 0.0).to_bits()));
-        for (from, to) in [(a, b), (b, c), (c, a)] {
+        // Two corners at one place make no edge.
+        for (from, to) in [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to) {
             *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
         }
     }
