@@ -10,14 +10,11 @@ const BLOCK: usize = 128;
 /// An outlier bends the spline around it, so of so many readings to either side only the farthest off is judged at once.
 const NEIGHBOURS: usize = 25;
 const ROUNDS: usize = 8;
-/// Noise below this (metres, or halves of radians) is none: a spline comes no nearer to a hand's way, and what no reading
-/// errs by makes none of them an outlier.
-const LEAST_NOISE: f64 = 3e-5;
+/// Noise below this (metres, or halves of radians) is rounding.
+const LEAST_NOISE: f64 = 1e-7;
 
 /// Slower than any tremor: a spline of this stiffness does not follow two or three outliers in a row.
 const STIFF_HZ: f64 = 3.0;
-/// Nor does it follow a hand that turns back, to better than this (metres, or halves of radians), however good the tracker.
-const STIFF_MISFIT: f64 = 3e-4;
 /// Noise beyond so many times that of the noisier readings of a scan is no noise,
 const MOST_NOISE: f64 = 4.0;
 /// where this share of the blocks is less noisy.
@@ -45,7 +42,6 @@ impl Known {
 
 /// Marks what is far even from a stiff spline, whatever lambda will be: outliers would choose a lambda that follows them.
 pub(super) fn mark_gross<const D: usize>(run: &mut Run<D>, outlier_sigmas: f64, known: Known) {
-    let known = Known { least: known.least.max(STIFF_MISFIT), ..known };
     mark(run, run.lambda_of(STIFF_HZ), outlier_sigmas, known);
 }
 

@@ -9,6 +9,12 @@ use nalgebra::SVector;
 /// Readings so long before the moment have their say; older ones tell less than a thousandth.
 pub(super) const WINDOW_NANOS: i64 = 1_000_000_000;
 
+/// From so few readings no spline comes nearer to a hand's way (metres, or halves of radians): a better tracker's readings
+/// are no outliers for that.
+const LEAST_MISFIT: f64 = 3e-5;
+/// The same of a spline that does not follow a hand that turns back.
+const STIFF_MISFIT: f64 = 3e-4;
+
 /// How stiff the spline is, and how noisy the readings are on each axis (metres or radians).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
@@ -43,9 +49,10 @@ impl Part {
         }
         // A quaternion is off by half the angle.
         let noise = if D == 4 { 0.5 * self.sigma } else { self.sigma };
-        let known = Known { least: noise, ..Known::NOTHING };
+        let [stiff, known] =
+            [STIFF_MISFIT, LEAST_MISFIT].map(|misfit| Known { least: noise.max(misfit), ..Known::NOTHING });
         let mut run = Run::new(samples, config.knot_nanos(), stamp_nanos)?;
-        outliers::mark_gross(&mut run, config.outlier_sigmas, known);
+        outliers::mark_gross(&mut run, config.outlier_sigmas, stiff);
         let spline = outliers::mark(&mut run, self.lambda, config.outlier_sigmas, known)?;
         let behind = run.samples.partition_point(|s| s.stamp_nanos < stamp_nanos);
         let beside_outlier = run.samples[behind.saturating_sub(1)..].iter().take(2).any(|sample| !sample.active);
