@@ -75,7 +75,8 @@ impl Surfer {
         self.sew().into_mesh(self.header.derived())
     }
 
-    /// The surface, cleaned and, if it is wanted so, closed; its phase is `End`. It depends on the points alone, not on how they came.
+    /// The surface, cleaned and, if it is wanted so, closed; its phase is `End`. It depends on the points alone, not on how
+    /// they came.
     pub fn final_mesh(&mut self) -> Mesh {
         self.measure();
         let mut sheet = self.sew();

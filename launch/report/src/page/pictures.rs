@@ -15,8 +15,8 @@ const PLASTER: [f32; 3] = [0.62, 0.60, 0.56];
 /// Albedo of what nobody measured.
 const ORANGE: [f32; 3] = [0.80, 0.33, 0.06];
 
-/// The pictures, row by row: truth, before refinement, model, shape alone, what of it was guessed, error map, residuals, expected error; what is
-/// missing is left out. The views are chosen by the truth, or by the model when there is none.
+/// The pictures, row by row: truth, before refinement, model, shape alone, what of it was guessed, error map, residuals,
+/// expected error; what is missing is left out. The views are chosen by the truth, or by the model when there is none.
 pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError> {
     let Some(framing) = exhibits.truth.or(exhibits.model) else { return Ok(String::new()) };
     let views = four_views(&framing.mesh, WIDTH, HEIGHT);
