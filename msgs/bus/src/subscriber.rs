@@ -32,8 +32,10 @@ const RECOVER_EVERY: Duration = Duration::from_secs(1);
 pub(crate) fn listen(session: &Session, key: &str, past: Past, ring: &Ring) -> Result<Line, BusError> {
     let (ring, depth) = (ring.clone(), ring.depth());
     let builder = session.declare_subscriber(key.to_owned()).callback(move |sample| ring.push(sample));
-    // More than the ring holds would only fall out of it.
-    let history = HistoryConfig::default().detect_late_publishers().max_samples(depth);
+    // More than the ring holds would only fall out of it. Publishers that come later need no question of their own: the
+    // router passes on all they send. With such a second question (`detect_late_publishers`) zenoh-ext 1.10.2 forgets a
+    // stream's history when something new comes between the two answers.
+    let history = HistoryConfig::default().max_samples(depth);
     match past {
         Past::None => builder.wait().map(Line::Plain),
         Past::Kept => builder.history(history).wait().map(Line::WithHistory),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
 use bus::{Bus, BusConfig, Presence, Router, Subscriber};
+use std::sync::mpsc::{self, TryRecvError};
 use std::time::{Duration, Instant};
 use wire::topic::{self, Topic};
 use wire::{Bulk, Extent, Header, Message, Phase, RunPhase, Scan, codec};
@@ -76,6 +77,47 @@ fn a_late_subscriber_gets_the_whole_stream_in_order() {
     scans.send(scan(500)).unwrap();
     assert_eq!(wait_for(&receiver, &mut late).header.stamp_nanos, 500);
     assert_eq!(late.counts().lost, 0);
+}
+
+#[test]
+fn whoever_joins_while_a_stream_flows_gets_it_from_its_beginning_without_a_gap() {
+    let net = Private::new();
+    let sender = net.open();
+    let (_flows, stopped) = mpsc::channel::<()>();
+    std::thread::spawn(move || {
+        let mut scans = sender.publisher(&topic::scan("head")).unwrap();
+        for i in (0..).take_while(|_| stopped.try_recv() == Err(TryRecvError::Empty)) {
+            scans.send(scan(i)).unwrap();
+            std::thread::sleep(Duration::from_micros(300));
+        }
+    });
+    for _ in 0..20 {
+        let receiver = net.open();
+        let mut late = receiver.subscribe(&topic::scan("head"), 1 << 16).unwrap().expecting(0);
+        let seen: Vec<i64> = (0..1000).map(|_| wait_for(&receiver, &mut late).header.stamp_nanos).collect();
+        assert!(seen.iter().copied().eq(0..1000), "it began at {}, {:?}", seen[0], late.counts());
+    }
+}
+
+#[test]
+fn what_is_latched_reaches_whoever_subscribes_at_that_very_moment() {
+    let net = Private::new();
+    for round in 0..100 {
+        let mut topic = topic::run_phase();
+        topic.key = format!("run/{round}");
+        let here = topic.clone();
+        let (sender, receiver) = (net.open(), net.open());
+        let sending = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_micros(20 * round));
+            let mut phases = sender.publisher(&here).unwrap();
+            phases.send(RunPhase { header: Header::default(), discard: false }).unwrap();
+            // It is kept as long as it has a publisher.
+            (sender, phases)
+        });
+        let mut phases = receiver.subscribe(&topic, 4).unwrap();
+        wait_for(&receiver, &mut phases);
+        drop(sending.join());
+    }
 }
 
 #[test]

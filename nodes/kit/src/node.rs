@@ -16,9 +16,6 @@ use wire::{Calibration, Clock, Header, Health, LogLine, Message, Progress, RunPh
 /// How long a node sleeps at most before it looks whether it was told to stop.
 pub(crate) const NAP: Duration = Duration::from_millis(50);
 const HEALTH_EVERY: Duration = Duration::from_secs(1);
-/// All has come when nothing has for so many naps.
-const QUIET_NAPS: u32 = 3;
-const LONGEST_CATCH_UP: Duration = Duration::from_secs(1);
 const LONG: Duration = Duration::from_secs(10);
 
 /// One node: its bus, its account, and whether it should stop.
@@ -163,24 +160,11 @@ impl Node {
         }
     }
 
-    /// Declares that all inputs are open: sources may start. A node that is started again first hears what its inputs have
-    /// sent so far: as soon as it is ready its sources go on, and a message that overtakes the ones before it would shut them
-    /// out, since zenoh-ext (1.10.2) asks for them twice, and forgets them when something new comes between the two answers.
+    /// Declares that all inputs are open: sources may start.
     pub fn ready(&mut self) -> anyhow::Result<()> {
-        if self.spec.next_seq.is_some() {
-            self.catch_up();
-        }
         self.token = Some(self.bus.declare_ready(&self.spec.name())?);
         tracing::debug!("ready");
         Ok(())
-    }
-
-    /// Until nothing comes any more; in real time something always does.
-    fn catch_up(&self) {
-        let (started, mut quiet) = (Instant::now(), 0);
-        while quiet < QUIET_NAPS && started.elapsed() < LONGEST_CATCH_UP && !self.stopper.is_stopping() {
-            quiet = if self.bus.wait(NAP) { 0 } else { quiet + 1 };
-        }
     }
 
     /// Rests until something has come, or a moment has passed; false when the node was told to stop.
