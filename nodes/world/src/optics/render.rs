@@ -7,7 +7,7 @@ use super::line::{self, LaserImage, View};
 use super::psf::Psf;
 use super::random_field::{NormalTable, SpeckleField};
 use super::sensor::{Noise, Sensor};
-use super::shade::{Lighting, Patches};
+use super::shade::{Lighting, Patches, ROOM};
 use super::stage::Stage;
 use super::{OpticsError, OpticsSection};
 use crate::random::word;
@@ -29,6 +29,8 @@ pub struct CameraModelSim {
     normal: NormalTable,
     speckle: SpeckleField,
     seed: u64,
+    /// The vectors that this machine has. Nothing is fused for them, so bytes are the same with any.
+    arch: pulp::Arch,
 }
 
 /// Memory that pictures are made in, to be used again; one for each thread.
@@ -38,6 +40,7 @@ pub struct Workspace {
     patches: Patches,
     cuts: Cuts,
     laser: LaserImage,
+    shaded: Vec<f32>,
     blur: BlurRows,
     row: Vec<f32>,
     places: Vec<u32>,
@@ -68,6 +71,7 @@ impl CameraModelSim {
             speckle: SpeckleField::new(word(seed, 2)),
             section,
             seed,
+            arch: pulp::Arch::new(),
         })
     }
 
@@ -90,7 +94,7 @@ impl CameraModelSim {
         } else {
             gain::of_picture(&self.section, &self.stage, &lighting, seen, patches, levels)
         };
-        let data = self.expose(index, light, &lighting, gain, out);
+        let data = self.arch.dispatch(Exposure { model: self, index, light, lighting, gain, memory: out });
         let Camera { width, height, .. } = self.camera;
         Frame {
             header: Header { seq: index, ..Header::default() },
@@ -138,10 +142,12 @@ impl CameraModelSim {
         }
     }
 
+    #[inline(always)]
     fn expose(&self, index: u64, light: Light, lighting: &Lighting, gain: f32, out: &mut Workspace) -> Vec<u8> {
-        let Workspace { seen, patches, laser, blur, row: line, places, .. } = out;
+        let Workspace { seen, patches, laser, shaded, blur, row: line, places, .. } = out;
         let (width, height) = (seen.width, seen.height);
         let mut data = vec![0; 3 * width * height];
+        shaded.resize(3 * (width + ROOM), 0.0);
         line.resize(3 * width, 0.0);
         places.resize(3 * width, 0);
         let weights = self.psf.centred();
@@ -150,8 +156,8 @@ impl CameraModelSim {
         let mut taken = 0;
         for (row, bytes) in data.chunks_exact_mut(3 * width).enumerate() {
             while taken < height && taken <= row + self.psf.radius {
-                patches.shade_row(taken, &self.stage, lighting, seen, line);
-                blur.push(taken, line, weights);
+                patches.shade_row(taken, &self.stage, lighting, seen, shaded);
+                blur.push(taken, shaded, weights);
                 taken += 1;
             }
             blur.blurred(row, height, weights, line);
@@ -182,6 +188,7 @@ impl CameraModelSim {
     }
 
     /// Natural vignetting: cos⁴ of the angle to the axis.
+    #[inline(always)]
     fn dim_corners(&self, row: usize, line: &mut [f32]) {
         let strength = self.section.vignetting as f32;
         if strength == 0.0 {
@@ -200,5 +207,24 @@ impl CameraModelSim {
             let kept = if kept > 0.0 { kept } else { 0.0 };
             (*red, *green, *blue) = (*red * kept, *green * kept, *blue * kept);
         }
+    }
+}
+
+/// One exposure, to be compiled for each kind of vectors (a closure would be compiled once, for the least of them).
+struct Exposure<'a> {
+    model: &'a CameraModelSim,
+    index: u64,
+    light: Light,
+    lighting: Lighting,
+    gain: f32,
+    memory: &'a mut Workspace,
+}
+
+impl pulp::NullaryFnOnce for Exposure<'_> {
+    type Output = Vec<u8>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<u8> {
+        self.model.expose(self.index, self.light, &self.lighting, self.gain, self.memory)
     }
 }

@@ -38,6 +38,7 @@ impl Sensor {
     }
 
     /// One row: `light` is red, green and blue of the row in turn, `places` as long; `out` is interleaved.
+    #[inline(always)]
     pub fn expose(&self, light: &[f32], gain: f32, noise: Noise, places: &mut [u32], out: &mut [u8]) {
         let width = light.len() / 3;
         for (channel, full) in self.full_electrons.iter().enumerate() {
@@ -73,6 +74,7 @@ pub(super) struct Noise<'a> {
 }
 
 /// The table's entry of some light.
+#[inline(always)]
 fn place(light: f32) -> u32 {
     // Written so that NaN is dark.
     let light = if light > DARKEST { light } else { DARKEST };

@@ -21,8 +21,11 @@ pub(super) const LAMP_DISTANCE_M: f32 = 0.2;
 /// What is seen where there is nothing: a far wall's share of the room's light.
 const NOTHING: f32 = 0.02;
 
-/// Pixels from one look at a texture to the next, at most.
-const FARTHEST_LOOK: usize = 4;
+/// Pixels that are written at a time, and from one look at a texture to the next, at most.
+const LANES: usize = 4;
+/// A row of light has so much room behind each of its channels: a run's last pixels are written whole, and what lies
+/// behind them is written over by the next run.
+pub(super) const ROOM: usize = LANES - 1;
 
 /// Four values that are linear over a triangle's pixels: red, green, blue; or, under a texture, light, gloss, u and v.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +35,8 @@ struct Patch {
     value: [f32; 4],
     per_u: [f32; 4],
     per_v: [f32; 4],
+    /// Whose triangle.
+    owner: u16,
 }
 
 /// The patches of one picture, made when first seen.
@@ -49,13 +54,14 @@ impl Patches {
         self.patches.clear();
     }
 
-    fn of(&mut self, triangle: u32, stage: &Stage, light: &Lighting, seen: &VisibilityBuffer) -> Patch {
+    #[inline(always)]
+    fn of(&mut self, triangle: u32, stage: &Stage, light: &Lighting, seen: &VisibilityBuffer) -> &Patch {
         let slot = &mut self.slots[triangle as usize];
         if *slot == 0 {
             self.patches.push(patch(triangle as usize, stage, light, seen));
             *slot = self.patches.len() as u32;
         }
-        self.patches[*slot as usize - 1]
+        &self.patches[*slot as usize - 1]
     }
 
     /// The light of one pixel.
@@ -82,27 +88,27 @@ impl Patches {
         }
     }
 
-    /// The light of one row of pixels: red, then green, then blue.
+    /// The light of one row of pixels: red, then green, then blue, each with its [`ROOM`].
+    #[inline(always)]
     pub fn shade_row(&mut self, row: usize, stage: &Stage, light: &Lighting, seen: &VisibilityBuffer, out: &mut [f32]) {
         let triangles = &seen.triangle[row * seen.width..][..seen.width];
-        let (red, rest) = out.split_at_mut(seen.width);
-        let (green, blue) = rest.split_at_mut(seen.width);
+        let (red, rest) = out.split_at_mut(seen.width + ROOM);
+        let (green, blue) = rest.split_at_mut(seen.width + ROOM);
         let mut first = 0;
         while first < triangles.len() {
             let triangle = triangles[first];
-            let run = triangles[first..].iter().take_while(|next| **next == triangle).count();
-            let run = first..first + run;
-            let out = [&mut red[run.clone()], &mut green[run.clone()], &mut blue[run.clone()]];
+            let count = triangles[first..].iter().take_while(|next| **next == triangle).count();
+            let out = [&mut red[first..], &mut green[first..], &mut blue[first..]];
             if triangle == NO_TRIANGLE {
-                out.into_iter().for_each(|channel| channel.fill(nothing(stage)));
+                out.into_iter().for_each(|channel| channel[..count].fill(nothing(stage)));
             } else {
                 let patch = self.of(triangle, stage, light, seen);
-                match &stage.finish_of(triangle as usize).texture {
-                    None => patch.fill_plain(first, row, out),
-                    Some(picture) => patch.fill_textured(first, row, picture, out),
+                match &stage.finish[usize::from(patch.owner)].texture {
+                    None => patch.fill_plain(first, row, count, out),
+                    Some(picture) => patch.fill_textured(first, row, count, picture, out),
                 }
             }
-            first = run.end;
+            first += count;
         }
     }
 }
@@ -113,41 +119,58 @@ impl Patch {
         std::array::from_fn(|k| self.value[k] + self.per_u[k] * u + self.per_v[k] * v)
     }
 
-    fn fill_plain(&self, column: usize, row: usize, [red, green, blue]: [&mut [f32]; 3]) {
-        let [r, g, b, _] = self.start(column, row);
-        let [r_step, g_step, b_step, _] = self.per_u;
-        for (i, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
-            let i = i as f32;
-            (*red, *green, *blue) = (r + r_step * i, g + g_step * i, b + b_step * i);
+    #[inline(always)]
+    fn fill_plain(&self, column: usize, row: usize, count: usize, mut out: [&mut [f32]; 3]) {
+        let start = self.start(column, row);
+        for first in (0..count).step_by(LANES) {
+            let along = lanes() + f32x4::splat(first as f32);
+            for (k, out) in out.iter_mut().enumerate() {
+                write(f32x4::splat(start[k]) + f32x4::splat(self.per_u[k]) * along, &mut out[first..]);
+            }
         }
     }
 
     /// The texture is looked up once in each of its own pixels where those are the larger ones, up to every
-    /// [`FARTHEST_LOOK`], and runs evenly in between.
-    fn fill_textured(&self, column: usize, row: usize, picture: &LinearTexture, mut out: [&mut [f32]; 3]) {
+    /// [`LANES`], and runs evenly in between.
+    #[inline(always)]
+    fn fill_textured(
+        &self,
+        column: usize,
+        row: usize,
+        count: usize,
+        picture: &LinearTexture,
+        mut out: [&mut [f32]; 3],
+    ) {
         let start = self.start(column, row);
         let at = |k: usize, i: usize| start[k] + self.per_u[k] * i as f32;
         let look = |i: usize| picture.sample([at(2, i), at(3, i)]);
-        let apart = (1.0 / picture.pixels_along([self.per_u[2], self.per_u[3]])).clamp(1.0, FARTHEST_LOOK as f32);
-        let (apart, length) = (apart as usize, out[0].len());
+        let apart = (1.0 / picture.pixels_along([self.per_u[2], self.per_u[3]])).clamp(1.0, LANES as f32);
+        let apart = apart as usize;
         let (mut first, mut from) = (0, look(0));
-        let lanes = f32x4::new([0.0, 1.0, 2.0, 3.0]);
-        let [light_step, gloss_step] = [0, 1].map(|k| lanes * self.per_u[k]);
-        while first < length {
-            let count = apart.min(length - first);
-            let to = look(first + count);
-            let (seen, step) = (from.to_array(), ((to - from) * (1.0 / count as f32)).to_array());
+        let [light_step, gloss_step] = [0, 1].map(|k| lanes() * self.per_u[k]);
+        while first < count {
+            let length = apart.min(count - first);
+            let to = look(first + length);
+            let (seen, step) = (from.to_array(), ((to - from) * (1.0 / length as f32)).to_array());
             let (light, gloss) = (light_step + f32x4::splat(at(0, first)), gloss_step + f32x4::splat(at(1, first)));
             for (k, out) in out.iter_mut().enumerate() {
-                let shown = (lanes * step[k] + f32x4::splat(seen[k])) * light + gloss;
-                let out = &mut out[first..first + count];
-                match out.first_chunk_mut::<FARTHEST_LOOK>() {
-                    Some(all) => *all = shown.to_array(),
-                    None => out.iter_mut().zip(shown.to_array()).for_each(|(out, value)| *out = value),
-                }
+                write((lanes() * step[k] + f32x4::splat(seen[k])) * light + gloss, &mut out[first..]);
             }
-            (first, from) = (first + count, to);
+            (first, from) = (first + length, to);
         }
+    }
+}
+
+#[inline(always)]
+fn lanes() -> f32x4 {
+    f32x4::new([0.0, 1.0, 2.0, 3.0])
+}
+
+/// Writes the next pixels of a channel; with its room it has as many.
+#[inline(always)]
+fn write(values: f32x4, channel: &mut [f32]) {
+    if let Some(pixels) = channel.first_chunk_mut::<LANES>() {
+        *pixels = values.to_array();
     }
 }
 
@@ -155,11 +178,13 @@ fn nothing(stage: &Stage) -> f32 {
     stage.ambient.first().map_or(0.0, |light| light * NOTHING)
 }
 
+#[inline(never)]
 fn patch(triangle: usize, stage: &Stage, light: &Lighting, seen: &VisibilityBuffer) -> Patch {
     let corners = stage.mesh.triangles[triangle].map(|i| i as usize);
     let values = corners.map(|corner| corner_value(triangle, corner, stage, light));
     let mean = std::array::from_fn(|k| (values[0][k] + values[1][k] + values[2][k]) / 3.0);
-    let flat = Patch { origin: [0.0; 2], value: mean, per_u: [0.0; 4], per_v: [0.0; 4] };
+    let owner = stage.owner[triangle];
+    let flat = Patch { origin: [0.0; 2], value: mean, per_u: [0.0; 4], per_v: [0.0; 4], owner };
     let [Some(a), Some(b), Some(c)] = corners.map(|corner| seen.projected(corner)) else { return flat };
     let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
     let doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
@@ -174,6 +199,7 @@ fn patch(triangle: usize, stage: &Stage, light: &Lighting, seen: &VisibilityBuff
         value: values[0],
         per_u: std::array::from_fn(|k| to_b[k] * ac[1] - to_c[k] * ab[1]),
         per_v: std::array::from_fn(|k| to_c[k] * ab[0] - to_b[k] * ac[0]),
+        owner,
     }
 }
 
