@@ -60,6 +60,8 @@ impl StripeDetector {
             frame.check()?;
             self.find(frame, &mut refusals);
             self.refuse_the_lonely(&mut refusals);
+            // After the grains, which must not push the line out of a row.
+            self.refuse_the_small(&mut refusals);
             self.mark_the_best();
             let Config { lateral_lines: lines, link_px, speckle_contrast: contrast, .. } = self.config;
             self.lateral.average(&mut self.peaks, Averaging { lines, link_px, contrast });
@@ -99,7 +101,6 @@ impl StripeDetector {
 
     /// The peaks of one line.
     fn line(&mut self, frame: &Frame, runs: std::ops::Range<usize>, sigma: f32, refusals: &mut Refusals) {
-        let start = self.peaks.len();
         // What stands out beside a clipped core, or in a ragged flank, belongs to the peak before it.
         let mut taken_to = f32::NEG_INFINITY;
         for at in runs {
@@ -116,13 +117,6 @@ impl StripeDetector {
                 Err(reason) => refusals.count(reason),
             }
         }
-        while self.peaks.len() - start > self.config.max_peaks_per_line {
-            let smallest = (start..self.peaks.len())
-                .min_by(|&a, &b| self.peaks[a].peak.amplitude.total_cmp(&self.peaks[b].peak.amplitude))
-                .unwrap_or(start);
-            self.peaks.remove(smallest);
-            refusals.count(Reason::Crowded);
-        }
     }
 
     /// Leaves out what no line goes on from.
@@ -136,6 +130,23 @@ impl StripeDetector {
             }
             holds
         });
+    }
+
+    /// Keeps the largest of each line.
+    fn refuse_the_small(&mut self, refusals: &mut Refusals) {
+        let mut start = 0;
+        while let Some(&LinePeak { line, .. }) = self.peaks.get(start) {
+            let mut end = start + self.peaks[start..].iter().take_while(|peak| peak.line == line).count();
+            while end - start > self.config.max_peaks_per_line {
+                let smallest = (start..end)
+                    .min_by(|&a, &b| self.peaks[a].peak.amplitude.total_cmp(&self.peaks[b].peak.amplitude))
+                    .unwrap_or(start);
+                self.peaks.remove(smallest);
+                refusals.count(Reason::Crowded);
+                end -= 1;
+            }
+            start = end;
+        }
     }
 
     /// The largest of each line is its best.

@@ -222,6 +222,23 @@ fn a_grain_that_no_line_goes_on_from_is_no_peak_however_bright() {
 }
 
 #[test]
+fn grains_push_no_line_out_of_a_crowded_row() {
+    // Ten grains in each row, each somewhere in its own two hundred pixels and all brighter than the line between them.
+    let mut random = picture::Random(7);
+    let data = (0..40).flat_map(|v| {
+        let grains: Vec<f64> = (0..10).map(|i| 260.0 + 200.0 * f64::from(i) + 140.0 * random.uniform()).collect();
+        (0..2300).map(move |u| {
+            let u = f64::from(u);
+            let grains: f64 = grains.iter().map(|centre| line(u, *centre, 1.0, 120.0)).sum();
+            (10.0 + line(u, 100.0 + 0.5 * f64::from(v), 1.5, 60.0) + grains).round() as u8
+        })
+    });
+    let stripe = detect(&frame(2300, 40, PixelFormat::Grey8, data.collect()));
+    let near = |p: &&StripePeak| (p.u_px - 100.0 - 0.5 * p.v_px).abs() < 0.05;
+    assert_eq!(stripe.peaks.iter().filter(near).count(), 40, "{:?}", stripe.refused);
+}
+
+#[test]
 fn a_line_with_gaps_and_a_short_line_stay() {
     // Every third row dark, which costs two peaks at either end; and five rows of a line alone.
     let lit = |v: usize| (v < 60 && !v.is_multiple_of(3)) || (70..75).contains(&v);
