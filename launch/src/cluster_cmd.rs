@@ -39,6 +39,7 @@ pub fn run(args: &Args) -> Result<()> {
         world_from_camera: RigidPose::IDENTITY,
         position_sigma_m: 0.0,
         rotation_sigma_rad: 0.0,
+        region_sigma_m: 0.0,
         points: points.iter().map(|point| scanned(point, metres)).collect::<Bulk<ScanPoint>>(),
         refused: Vec::new(),
     });

@@ -34,6 +34,7 @@ fn scan(stamp_nanos: i64) -> Scan {
         world_from_camera: wire::RigidPose::IDENTITY,
         position_sigma_m: 0.0,
         rotation_sigma_rad: 0.0,
+        region_sigma_m: 0.0,
         points: Bulk(vec![]),
         refused: vec![],
     }

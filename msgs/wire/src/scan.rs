@@ -28,13 +28,16 @@ layout! {
         pub position_sigma_m: f64,
         /// One standard deviation of its orientation.
         pub rotation_sigma_rad: f64,
+        /// One standard deviation of what moves all that was seen here alike, along `to_sensor`, however many pictures saw it:
+        /// it does not average out. 0 where nobody knows.
+        pub region_sigma_m: f64,
         /// The points.
         pub points: Bulk<ScanPoint>,
         /// Profiles and points that had no pose, by reason.
         pub refused: Vec<Refusal>,
     }
 }
-message!(Scan @ 1);
+message!(Scan @ 2);
 
 impl Scan {
     /// No points: of a picture without a pose, and behind the last one.
@@ -44,6 +47,7 @@ impl Scan {
             world_from_camera: RigidPose::IDENTITY,
             position_sigma_m: 0.0,
             rotation_sigma_rad: 0.0,
+            region_sigma_m: 0.0,
             points: Bulk::default(),
             refused: Vec::new(),
         }

@@ -42,6 +42,7 @@ fn scan(points: usize) -> Scan {
         world_from_camera: RigidPose::IDENTITY,
         position_sigma_m: 0.0,
         rotation_sigma_rad: 0.0,
+        region_sigma_m: 0.0,
         points: Bulk(vec![ScanPoint::default(); points]),
         refused: vec![],
     }

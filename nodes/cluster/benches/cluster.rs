@@ -34,6 +34,7 @@ fn sweep(scans: usize) -> Vec<Scan> {
             world_from_camera: RigidPose::IDENTITY,
             position_sigma_m: 0.0,
             rotation_sigma_rad: 0.0,
+            region_sigma_m: 0.0,
             points: (0..POINTS_PER_SCAN).map(point).collect(),
             refused: vec![],
         }

@@ -18,6 +18,7 @@ pub struct Sample {
     /// In the world.
     pub position_m: [f32; 3],
     sigma_steps: u32,
+    region_sigma_steps: u32,
     to_sensor_steps: [i16; 3],
     /// Of the stamp of the picture that it is from.
     picture: u16,
@@ -25,17 +26,26 @@ pub struct Sample {
 
 impl Sample {
     /// `None` when anything in it is not finite.
-    pub fn new(point: &ScanPoint, picture: u16) -> Option<Self> {
+    pub fn new(point: &ScanPoint, region_sigma_m: f32, picture: u16) -> Option<Self> {
         let ScanPoint { position_m, to_sensor, sigma_m, .. } = *point;
         let sum = position_m[0] + position_m[1] + position_m[2] + to_sensor[0] + to_sensor[1] + to_sensor[2] + sigma_m;
         // One that is not finite makes the sum so; a finite sum that overflows is refused as well, rightly.
         sum.is_finite().then(|| Self {
             position_m,
-            sigma_steps: (sigma_m / SIGMA_STEP_M).clamp(0.0, SIGMA_STEPS_MOST) as u32,
+            sigma_steps: sigma_steps(sigma_m),
+            region_sigma_steps: sigma_steps(region_sigma_m),
             to_sensor_steps: to_sensor.map(|c| (c * STEPS_PER_UNIT) as i16),
             picture,
         })
     }
+}
+
+fn sigma_steps(sigma_m: f32) -> u32 {
+    (sigma_m / SIGMA_STEP_M).clamp(0.0, SIGMA_STEPS_MOST) as u32
+}
+
+fn square(steps: u32) -> u64 {
+    u64::from(steps) * u64::from(steps)
 }
 
 /// One ball.
@@ -60,6 +70,7 @@ pub struct Ball {
     square: [i64; 6],
     to_sensor: [i64; 3],
     variance: u64,
+    region_variance: u64,
 }
 
 /// The averages over a ball, in metres about its centre.
@@ -72,6 +83,8 @@ pub struct Averages {
     pub to_sensor: [f64; 3],
     /// Mean of the points' own variances.
     pub variance_m2: f64,
+    /// Mean of the variances that all points of a region share.
+    pub region_variance_m2: f64,
 }
 
 impl Ball {
@@ -89,6 +102,7 @@ impl Ball {
             square: [0; 6],
             to_sensor: [0; 3],
             variance: 0,
+            region_variance: 0,
         }
     }
 
@@ -99,14 +113,16 @@ impl Ball {
             (self.pictures, self.latest_picture) = (self.pictures + 1, sample.picture);
         }
         self.count += 1;
-        self.variance += u64::from(sample.sigma_steps) * u64::from(sample.sigma_steps);
+        self.variance += square(sample.sigma_steps);
+        self.region_variance += square(sample.region_sigma_steps);
     }
 
     /// Lets a point go that was taken in.
     pub fn remove(&mut self, sample: &Sample, steps_per_metre: f32) {
         self.sum(sample, steps_per_metre, -1);
         self.count -= 1;
-        self.variance -= u64::from(sample.sigma_steps) * u64::from(sample.sigma_steps);
+        self.variance -= square(sample.sigma_steps);
+        self.region_variance -= square(sample.region_sigma_steps);
     }
 
     fn sum(&mut self, sample: &Sample, steps_per_metre: f32, sign: i64) {
@@ -134,6 +150,7 @@ impl Ball {
         let offset_m = self.offset.map(|sum| sum as f64 * step_m / count);
         let [x, y, z] = offset_m;
         let of_mean = [x * x, y * y, z * z, x * y, x * z, y * z];
+        let mean_square_m2 = |sum: u64| sum as f64 * f64::from(SIGMA_STEP_M).powi(2) / count;
         let mut covariance_m2 = self.square.map(|sum| sum as f64 * step_m * step_m / count);
         for (c, m) in covariance_m2.iter_mut().zip(of_mean) {
             *c -= m;
@@ -142,7 +159,8 @@ impl Ball {
             offset_m,
             covariance_m2,
             to_sensor: self.to_sensor.map(|sum| sum as f64 / count),
-            variance_m2: self.variance as f64 * f64::from(SIGMA_STEP_M).powi(2) / count,
+            variance_m2: mean_square_m2(self.variance),
+            region_variance_m2: mean_square_m2(self.region_variance),
         }
     }
 }

@@ -92,7 +92,7 @@ impl BallClusterer {
         }
         let picture = fold(scan.header.stamp_nanos);
         for point in scan.points.iter() {
-            match Sample::new(point, picture) {
+            match Sample::new(point, scan.region_sigma_m as f32, picture) {
                 None => self.not_finite += 1,
                 Some(sample) if !self.state.grid.reaches(sample.position_m) => self.out_of_range += 1,
                 Some(sample) => self.state.insert(sample),

@@ -13,14 +13,14 @@
 //! The normal is that of the plane through the means of the neighbours within 2 D that were seen from the same side,
 //! turned towards the sensor; where fewer than four lie about a plane it is the mean direction to the sensor. It is meant
 //! for drawing and as a first guess: `surface` fits its own. `sigma_m` is the larger of the points' spread and their own
-//! mean sigma, over the root of their count: points are taken as independent, so an error of the pose that all points of
-//! a picture share is averaged too well where few pictures saw the ball. Scans bring no colour, so there is none.
+//! mean sigma, over the root of the number of pictures, and besides it what no number of pictures averages away
+//! ([`wire::Scan::region_sigma_m`]). Scans bring no colour, so there is none.
 //!
 //! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`geometry::Table`]), which the paper
 //! edited by hand, and tells where it is ([`wire::TablePlane`]): nothing of the thing is below it.
 //!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
-//! 0.8 mm). Memory: about 1 kB a ball on a surface, and 24 bytes for each point that a later ball might still take over
+//! 0.8 mm). Memory: about 1 kB a ball on a surface, and 28 bytes for each point that a later ball might still take over
 //! (farther than D/2 from its centre: about half of them). **Speed**: one look into a hash a point.
 //!
 //! ```
@@ -32,6 +32,7 @@
 //!     world_from_camera: RigidPose::IDENTITY,
 //!     position_sigma_m: 0.0,
 //!     rotation_sigma_rad: 0.0,
+//!     region_sigma_m: 0.0,
 //!     points: vec![at(0.0, 0.0), at(0.0002, 0.0001), at(-0.0002, -0.0001), at(0.05, 0.0)].into(),
 //!     refused: vec![],
 //! };

@@ -30,7 +30,7 @@ fn point(state: &State, id: u32, least_points: u32, near: &mut Vec<u32>) -> Clou
     let spread_squared = normal.dot(&(covariance * normal)).max(0.0);
     // Points of one picture err together, with its pose.
     let independent = ball.pictures.min(ball.count).max(1);
-    let variance = spread_squared.max(averages.variance_m2) / f64::from(independent);
+    let variance = spread_squared.max(averages.variance_m2) / f64::from(independent) + averages.region_variance_m2;
     CloudPoint {
         position_m: [0, 1, 2].map(|axis| (f64::from(ball.centre_m[axis]) + averages.offset_m[axis]) as f32),
         normal: normal.map(|c| c as f32).into(),

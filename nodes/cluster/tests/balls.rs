@@ -13,6 +13,7 @@ fn scan(revision: u32, points: Vec<ScanPoint>) -> Scan {
         world_from_camera: RigidPose::IDENTITY,
         position_sigma_m: 0.0,
         rotation_sigma_rad: 0.0,
+        region_sigma_m: 0.0,
         points: points.into(),
         refused: vec![],
     }
@@ -66,6 +67,20 @@ fn on_a_ball_the_averages_are_closer_and_the_normals_point_out() {
     // Averaging wins the root of the count; a ball is also D^2 / 8R flatter than the surface.
     assert!(rms_m < 1.3 * f64::from(NOISE_M) / points_per_ball.sqrt() + 3e-6, "{rms_m} with {points_per_ball} a ball");
     assert!(worst_angle_rad < 0.12, "{} degrees", worst_angle_rad.to_degrees());
+}
+
+#[test]
+fn what_all_pictures_share_does_not_average_out() {
+    const REGION_M: f32 = 4e-5;
+    let mut clusterer = BallClusterer::new(Config { ball_radius_m: 1e-3, ..Config::default() }).unwrap();
+    for stamp_nanos in 0..100 {
+        let of_picture = |stamp_nanos| Header { phase: Phase::Shape, stamp_nanos, ..Header::default() };
+        let point = scan(0, vec![point([0.0; 3])]);
+        clusterer.insert(&Scan { header: of_picture(stamp_nanos), region_sigma_m: f64::from(REGION_M), ..point });
+    }
+    let cloud = clusterer.whole();
+    let own = NOISE_M / 100f32.sqrt();
+    assert!((cloud.points[0].sigma_m - own.hypot(REGION_M)).abs() < 1e-7, "{}", cloud.points[0].sigma_m);
 }
 
 #[test]

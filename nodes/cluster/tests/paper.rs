@@ -19,6 +19,7 @@ fn scan(points: &[[f32; 3]]) -> Scan {
         world_from_camera: RigidPose::IDENTITY,
         position_sigma_m: 0.0,
         rotation_sigma_rad: 0.0,
+        region_sigma_m: 0.0,
         points: points.iter().map(point).collect(),
         refused: vec![],
     }

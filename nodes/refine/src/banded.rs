@@ -82,6 +82,16 @@ impl Banded {
 pub(crate) struct Factor(Banded);
 
 impl Factor {
+    /// L v.
+    pub fn product(&self, v: &[f64]) -> Vec<f64> {
+        let width = self.0.width;
+        let row = |i: usize| {
+            let first = (i + 1).saturating_sub(width);
+            dot(&self.0.row(i)[width - 1 + first - i..], &v[first..=i])
+        };
+        (0..self.0.size).map(row).collect()
+    }
+
     /// Overwrites `b` with the solution of L L^T x = b.
     pub fn solve(&self, b: &mut [f64]) {
         let (size, width) = (self.0.size, self.0.width);

@@ -6,12 +6,14 @@ use crate::guard::strokes;
 use crate::judge::{Judgement, judge};
 use crate::notices::{missing_stroke, notice_solution, notice_surface};
 use crate::outcome::outcome;
+use crate::posterior::{ONE_SURFEL_IN, region_sigmas_m};
 use crate::refinement::Refinement;
 use crate::scene::{Placed, Problem};
 use crate::schedule::{judging, wide};
 use crate::seen_through::carve;
 use crate::solver::{self, Noise, Solution};
 use crate::step::look;
+use crate::system::System;
 use crate::testimony::{globals, refused, tracker};
 use crate::tracker::Smoothed;
 use crate::unknowns::{Free, SPLINES};
@@ -68,9 +70,15 @@ pub(crate) fn finish(
     let (problem, x, judged, noise) =
         if kept { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
     let prior = solver::prior(config, &noise, problem);
-    let mut out = outcome(config, problem, &prior, judged, x);
+    let poses = problem.poses(x);
+    // What was held fast is not known the better for it.
+    let unknown = Free { hand_eye: true, clock: true, ..solution.free };
+    let few = judged.seen.thinned(ONE_SURFEL_IN);
+    let system = System::new(problem, &prior, &few, &unknown, &poses);
+    let regions = region_sigmas_m(&system, judged.information_m2 * ONE_SURFEL_IN as f64, config.seed);
+    let mut out = outcome(config, problem, &prior, judged, &regions, x);
     let carved = carve(&mut out.frames);
-    let (clock, hand_eye) = globals(problem, &prior, &wide_after, solution.free, x);
+    let (clock, hand_eye) = globals(problem, &prior, &wide_after.thinned(ONE_SURFEL_IN), solution.free, x);
     let observed =
         Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: held.directions };
     let evidence = Evidence {

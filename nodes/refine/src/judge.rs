@@ -5,7 +5,7 @@ use crate::precondition::spline_block;
 use crate::prior::Prior;
 use crate::scene::{FramePose, Problem};
 use crate::schur::FrameData;
-use crate::step::{StepPlan, look};
+use crate::step::{Seen, StepPlan, look};
 use crate::surfel::Member;
 use crate::unknowns::{Row, SPLINES};
 use nalgebra::{Matrix6, Vector6};
@@ -35,6 +35,11 @@ pub(crate) struct Judgement {
     pub sigma_m: f64,
     /// The share of memberships in surfels that other strokes saw as well.
     pub seen_twice: f64,
+    /// What was looked at.
+    pub seen: Seen,
+    /// One over the variance that a membership would have if each were a witness of its own, in 1/m^2: neighbours tell the
+    /// same, and a point is a member of several surfels.
+    pub information_m2: f64,
 }
 
 /// So many neighbours err alike: speckle, the borders of colours and the edges of the lit line reach over several points of a
@@ -81,7 +86,7 @@ pub(crate) fn judge(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> 
     };
     let frames: Vec<FrameJudgement> = (0..poses.len()).map(frame).collect();
     let seen_twice = twice.iter().sum::<usize>() as f64 / used.max(1) as f64;
-    Judgement { frames, sigma_m, seen_twice }
+    Judgement { frames, sigma_m, seen_twice, seen, information_m2: once }
 }
 
 /// The share of a surfel that frames of other strokes hold: two groups of weights a and b tell of their offset as much

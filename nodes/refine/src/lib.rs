@@ -87,6 +87,7 @@ pub mod node;
 mod notices;
 mod outcome;
 mod pcg;
+mod posterior;
 mod precondition;
 mod prior;
 mod quadric;
@@ -101,6 +102,7 @@ mod solver;
 mod spline;
 mod step;
 mod surfel;
+mod system;
 mod table;
 #[cfg(feature = "node")]
 mod tell;

@@ -70,7 +70,7 @@ pub(crate) fn tick(
     let notices = [(!better, Notice::KeptSmoothed), (taken_back, Notice::StepTakenBack)];
     let notices = notices.into_iter().filter(|(noticed, _)| *noticed).map(|(_, notice)| notice).collect();
     let (used, judged) = if better { (&x, &after) } else { (&zeros, &before) };
-    let out = outcome(config, &problem, &prior, judged, used);
+    let out = outcome(config, &problem, &prior, judged, &[], used);
     let evidence = Evidence {
         residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
         tracker: tracker(&smoothed, None, noise),

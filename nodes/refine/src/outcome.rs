@@ -43,8 +43,15 @@ const UNHELD: f64 = 8.0;
 /// ... when that is as much as this.
 const LEAST_UNHELD_M: f64 = 7e-4;
 
-/// Everything at the unknowns `x`, the whole laid onto the smoothed tracker.
-pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged: &Judgement, x: &[f64]) -> Outcome {
+/// Everything at the unknowns `x`, the whole laid onto the smoothed tracker; `regions_sigma_m` for each frame, or empty.
+pub(crate) fn outcome(
+    config: &Config,
+    problem: &Problem,
+    prior: &Prior,
+    judged: &Judgement,
+    regions_sigma_m: &[f64],
+    x: &[f64],
+) -> Outcome {
     let poses = problem.poses(x);
     let gauge = fixed(problem, &poses);
     let rows: Vec<&Row> = poses.iter().map(|pose| &pose.row).collect();
@@ -57,7 +64,8 @@ pub(crate) fn outcome(config: &Config, problem: &Problem, prior: &Prior, judged:
         let [position_sigma_m, rotation_sigma_rad] = of_camera(&problem.body_from_camera, covariance);
         let stamp_nanos = placed.stamp_nanos;
         let pose = TimedPose { stamp_nanos, pose: world_from_camera, position_sigma_m, rotation_sigma_rad };
-        RefinedFrame { header: gathered.header, points: gathered.points.clone(), pose, across_sigma_m }
+        let region_sigma_m = regions_sigma_m.get(k).copied().unwrap_or(0.0);
+        RefinedFrame { header: gathered.header, points: gathered.points.clone(), pose, across_sigma_m, region_sigma_m }
     };
     let all: Vec<RefinedFrame> = (0..poses.len()).into_par_iter().map(frame).collect();
     let trajectory = trajectory(problem, x, &gauge, &all);

@@ -6,6 +6,7 @@
 //! between the hand's movement and its tremor (2 to 8 Hz) go free, and where few strokes cross the surface does not hold it.
 
 use crate::banded::Banded;
+use crate::posterior::sign;
 use crate::spline::Knots;
 use crate::unknowns::{BIAS, Free, GLOBALS, MONOMIALS, NOISE, SPLINES, TREMOR, Unknowns};
 
@@ -87,6 +88,26 @@ impl Prior {
         for (i, precision) in self.globals.iter().enumerate().filter(|(i, _)| free.global(*i)) {
             out[start + i] += precision * v[start + i];
         }
+    }
+
+    /// Forces of covariance P on the blocks that are free: L times signs, L L^T = P.
+    pub fn shaken(&self, unknowns: &Unknowns, free: &Free, seed: u64) -> Vec<f64> {
+        let mut out = vec![0.0; unknowns.len()];
+        for (which, bands) in self.splines.iter().enumerate().filter(|(which, _)| free.splines[*which]) {
+            let factors = bands.clone().map(Banded::factor);
+            let first = unknowns.spline(which).start;
+            for axis in 0..6 {
+                let place = |i: usize| first + 6 * i + axis;
+                let signs: Vec<f64> = (0..bands[0].size).map(|i| sign(seed, place(i) as u64)).collect();
+                let forces = factors[axis / 3].product(&signs);
+                forces.into_iter().enumerate().for_each(|(i, force)| out[place(i)] = force);
+            }
+        }
+        let start = unknowns.globals().start;
+        for (i, precision) in self.globals.iter().enumerate().filter(|(i, _)| free.global(*i)) {
+            out[start + i] = precision.sqrt() * sign(seed, (start + i) as u64);
+        }
+        out
     }
 
     /// Adds P to the block of a spline, as the preconditioner holds it.

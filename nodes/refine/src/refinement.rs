@@ -26,6 +26,8 @@ pub(crate) struct RefinedFrame {
     pub pose: TimedPose,
     /// How far the pose's error moves its points across the surface: one standard deviation.
     pub across_sigma_m: f64,
+    /// How far the whole region that it saw may stand off; 0 where nobody asked.
+    pub region_sigma_m: f64,
 }
 
 impl Refinement {
@@ -53,6 +55,7 @@ impl RefinedFrame {
             // The points' own sigmas hold what the pose's error does to the surface. Where the whole stands is another matter.
             position_sigma_m: 0.0,
             rotation_sigma_rad: 0.0,
+            region_sigma_m: self.region_sigma_m,
             points: self.points.iter().map(place).collect::<Bulk<_>>(),
             refused: Vec::new(),
         }

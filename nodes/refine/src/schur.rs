@@ -4,6 +4,7 @@
 //! d^T J~^T (I - Psi Psi^T) J~ d with J~ = sqrt(w) J and Psi = sqrt(w) phi L^-T, where L L^T = sum w phi phi^T (+ ridge).
 //! Psi^T Psi <= I, so what is left is symmetric and positive semi-definite whatever single precision does to Psi.
 
+use crate::posterior::sign;
 use crate::surfel::{Member, Patch};
 use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
@@ -47,6 +48,17 @@ impl Patch {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.members[start as usize..end as usize])
     }
+
+    /// One in so many surfels.
+    pub fn thinned(&self, one_in: usize) -> Self {
+        let mut thinned = Self::default();
+        for (members, middle) in self.surfels().zip(&self.middles).step_by(one_in) {
+            thinned.members.extend_from_slice(members);
+            thinned.ends.push(thinned.members.len() as u32);
+            thinned.middles.push(*middle);
+        }
+        thinned
+    }
 }
 
 /// Room for the product: one sum for each patch.
@@ -73,12 +85,30 @@ pub(crate) fn product(
         (0..6).for_each(|i| wide[i] = correction[i] as f32);
     }
     let moves = &room.moves;
-    patches.par_iter().zip(&mut room.sums).for_each(|(patch, sums)| {
+    forces(patches, weight, &mut room.sums, |_, member| dot(&member.jacobian, &moves[member.frame as usize]))
+}
+
+/// The forces when every member's distance is moved by 1, this way or that: with the root of a weight their covariance is
+/// what [`product`] multiplies by with the weight.
+pub(crate) fn shaken(patches: &[Patch], weight: f64, seed: u64, room: &mut Room) -> Vec<Vector6<f64>> {
+    forces(patches, weight, &mut room.sums, |index, _| sign(seed, index) as f32)
+}
+
+/// J~^T (I - Psi Psi^T) times a value of each member, by its number, times `weight`.
+fn forces(
+    patches: &[Patch],
+    weight: f64,
+    room: &mut [Vec<[f64; 6]>],
+    value: impl Fn(u64, &Member) -> f32 + Sync,
+) -> Vec<Vector6<f64>> {
+    patches.par_iter().zip(room.par_iter_mut()).enumerate().for_each(|(number, (patch, sums))| {
         sums.fill([0.0; 6]);
         let mut values = Vec::new();
+        let mut index = (number as u64) << 32;
         for members in patch.surfels() {
             values.clear();
-            values.extend(members.iter().map(|m| dot(&m.jacobian, &moves[m.frame as usize])));
+            values.extend(members.iter().zip(index..).map(|(member, index)| value(index, member)));
+            index += members.len() as u64;
             eliminate(members, &mut values);
             for (member, value) in members.iter().zip(&values) {
                 let sum = &mut sums[member.frame as usize];
@@ -88,10 +118,11 @@ pub(crate) fn product(
     });
     let total = |k: usize| {
         let mut total = Vector6::zeros();
-        room.sums.iter().for_each(|sums| (0..6).for_each(|i| total[i] += sums[k][i]));
+        room.iter().for_each(|sums| (0..6).for_each(|i| total[i] += sums[k][i]));
         total * weight
     };
-    (0..corrections.len()).into_par_iter().with_min_len(FRAMES_A_TASK).map(total).collect()
+    let frames = room.first().map_or(0, Vec::len);
+    (0..frames).into_par_iter().with_min_len(FRAMES_A_TASK).map(total).collect()
 }
 
 /// Right side and diagonal blocks, times `weight`.

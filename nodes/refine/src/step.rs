@@ -1,16 +1,13 @@
 //! One Gauss-Newton step: surfels at the present poses, and the correction that brings their points together.
 
 use crate::cloud::Cloud;
-use crate::pcg;
-use crate::precondition::Preconditioner;
 use crate::prior::Prior;
 use crate::scene::{FramePose, Problem};
-use crate::schur::{FRAMES_A_TASK, FrameData, Room, frame_data, product, robust_sigma_m};
+use crate::schur::{FrameData, frame_data, robust_sigma_m};
 use crate::surfel::{Patch, SurfelPlan, build};
+use crate::system::System;
 use crate::table;
-use crate::unknowns::{Free, Row};
-use nalgebra::Vector6;
-use rayon::prelude::*;
+use crate::unknowns::Free;
 
 /// What a step works with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +40,16 @@ pub(crate) struct Seen {
     pub frames_on_table: usize,
 }
 
+impl Seen {
+    /// One in so many surfels, each standing for as many.
+    pub fn thinned(&self, one_in: usize) -> Self {
+        let patches: Vec<Patch> = self.patches.iter().map(|patch| patch.thinned(one_in)).collect();
+        let weight = self.weight * one_in as f64;
+        let frames = frame_data(&patches, weight, self.frames.len());
+        Self { patches, frames, weight, ..*self }
+    }
+}
+
 /// Each point is a member of several surfels, and surfels are not the surface: their word counts this much.
 const DATA_SHARE: f64 = 0.2;
 /// Residuals are never believed to be better than this.
@@ -66,28 +73,11 @@ pub(crate) fn look(problem: &Problem, poses: &[FramePose], plan: &StepPlan) -> S
 pub(crate) fn step(problem: &Problem, prior: &Prior, plan: &StepPlan, x: &mut [f64]) -> Option<Seen> {
     let poses = problem.poses(x);
     let seen = look(problem, &poses, plan);
-    let (unknowns, free) = (&problem.unknowns, &plan.free);
-    let rows: Vec<&Row> = poses.iter().map(|pose| &pose.row).collect();
-    let mut force = vec![0.0; x.len()];
-    prior.add_product(unknowns, free, x, &mut force);
+    let system = System::new(problem, prior, &seen, &plan.free, &poses);
+    let mut force = system.believed(x);
     force.iter_mut().for_each(|f| *f = -*f);
-    for (row, data) in rows.iter().zip(&seen.frames) {
-        unknowns.spread(row, &data.force, free, &mut force);
-    }
-    let preconditioner = Preconditioner::new(unknowns, free, &rows, &seen.frames, prior);
-    let mut room = Room::new(&seen.patches, rows.len());
-    let apply = |v: &[f64]| {
-        let corrections: Vec<Vector6<f64>> =
-            rows.par_iter().with_min_len(FRAMES_A_TASK).map(|row| unknowns.correction(row, v, true)).collect();
-        let forces = product(&seen.patches, seen.weight, &corrections, &mut room);
-        let mut out = vec![0.0; v.len()];
-        prior.add_product(unknowns, free, v, &mut out);
-        rows.iter().zip(&forces).for_each(|(row, force)| unknowns.spread(row, force, free, &mut out));
-        out
-    };
-    const TOLERANCE: f64 = 1e-3;
-    let change =
-        pcg::solve(&force, plan.cg_steps, TOLERANCE, apply, |residual| preconditioner.apply(unknowns, residual))?;
+    system.spread(seen.frames.iter().map(|frame| &frame.force), &mut force);
+    let change = system.solve(&force, plan.cg_steps)?;
     x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
     Some(seen)
 }

@@ -3,47 +3,31 @@
 use crate::Config;
 use crate::evidence::{ClockEvidence, HandEyeEvidence, RefusedInput, TrackerEvidence};
 use crate::gather::Gathered;
-use crate::pcg;
-use crate::precondition::Preconditioner;
 use crate::prior::Prior;
 use crate::scene::Problem;
-use crate::schur::{Room, product};
 use crate::solver::Noise;
 use crate::step::Seen;
+use crate::system::System;
 use crate::tracker::Smoothed;
-use crate::unknowns::{Free, Row};
-use nalgebra::Vector6;
+use crate::unknowns::Free;
 use rayon::prelude::*;
 
 const CG_STEPS: usize = 40;
-const TOLERANCE: f64 = 1e-3;
 
 const SHARED: usize = 8;
 
 /// The marginal standard deviations of hand-eye (six), clock and lag: the roots of the diagonal of H^-1, a column each.
 fn sigmas(problem: &Problem, prior: &Prior, seen: &Seen, free: &Free, x: &[f64]) -> [f64; SHARED] {
-    let unknowns = &problem.unknowns;
     let poses = problem.poses(x);
-    let rows: Vec<&Row> = poses.iter().map(|pose| &pose.row).collect();
-    let preconditioner = Preconditioner::new(unknowns, free, &rows, &seen.frames, prior);
+    let system = System::new(problem, prior, seen, free, &poses);
     let sigma = |i: usize| {
         if i + 1 == SHARED && !free.lag {
             return f64::NAN;
         }
-        let at = unknowns.hand_eye().start + i;
+        let at = problem.unknowns.hand_eye().start + i;
         let mut unit = vec![0.0; x.len()];
         unit[at] = 1.0;
-        let mut room = Room::new(&seen.patches, rows.len());
-        let apply = |v: &[f64]| {
-            let corrections: Vec<Vector6<f64>> = rows.iter().map(|row| unknowns.correction(row, v, true)).collect();
-            let forces = product(&seen.patches, seen.weight, &corrections, &mut room);
-            let mut out = vec![0.0; v.len()];
-            prior.add_product(unknowns, free, v, &mut out);
-            rows.iter().zip(&forces).for_each(|(row, force)| unknowns.spread(row, force, free, &mut out));
-            out
-        };
-        let column = pcg::solve(&unit, CG_STEPS, TOLERANCE, apply, |r| preconditioner.apply(unknowns, r));
-        column.map_or(f64::NAN, |column| column[at].max(0.0).sqrt())
+        system.solve(&unit, CG_STEPS).map_or(f64::NAN, |column| column[at].max(0.0).sqrt())
     };
     let all: Vec<f64> = (0..SHARED).into_par_iter().map(sigma).collect();
     std::array::from_fn(|i| all[i])

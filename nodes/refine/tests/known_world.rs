@@ -52,6 +52,21 @@ fn white_noise_of_three_degrees_leaves_a_tenth_of_a_millimetre() {
     assert!((0.6..0.9).contains(&one) && (0.9..0.99).contains(&two), "{one} {two}");
 }
 
+/// What no number of pictures averages away is stated as well.
+#[test]
+fn whole_regions_stand_off_by_what_is_stated_of_them() {
+    for tracker in ["W", "P", "C"] {
+        let sweep = Sweep::new(&named(tracker));
+        let regions = measure::regions(&sweep, &refined(&sweep).scans);
+        let within =
+            regions.iter().filter(|[off, sigma]| off.abs() <= 2.0 * sigma).count() as f64 / regions.len() as f64;
+        let rms_mm = |i: usize| (regions.iter().map(|r| r[i] * r[i]).sum::<f64>() / regions.len() as f64).sqrt() * 1e3;
+        let (off, stated) = (rms_mm(0), rms_mm(1));
+        println!("{tracker}: {} regions, rms {off:.3} of {stated:.3} mm, {within:.2} within two sigma", regions.len());
+        assert!(regions.len() > 100 && (0.6..1.4).contains(&(off / stated)) && within > 0.9, "{off} {stated} {within}");
+    }
+}
+
 #[test]
 fn a_scan_of_twenty_seconds_is_held_by_what_is_known_of_hands() {
     for seed in [1, 2] {

@@ -244,6 +244,7 @@ impl Register {
             world_from_camera: rigid_to_wire(&world_from_camera),
             position_sigma_m: body.position_sigma_m,
             rotation_sigma_rad: body.rotation_sigma_rad,
+            region_sigma_m: 0.0,
             points: Bulk(points),
             refused,
         });

@@ -131,6 +131,7 @@ impl Sample for Scan {
             world_from_camera: pose(),
             position_sigma_m: 1e-3,
             rotation_sigma_rad: 0.05,
+            region_sigma_m: 2e-5,
             points: Bulk(vec![point]),
             refused: refused(),
         }

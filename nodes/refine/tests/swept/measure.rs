@@ -4,6 +4,7 @@ use super::Sweep;
 use geometry::{MeshIndex, rigid_from_wire};
 use nalgebra::{Cholesky, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use wire::{ProfilePoint, Scan, ScanPoint};
 
 /// Millimetres.
@@ -160,6 +161,36 @@ pub fn frames(sweep: &Sweep, scans: &[Scan]) -> Vec<(i64, usize, f64, f64)> {
         (scan.header.stamp_nanos, points.len(), rms(&d), d.iter().sum::<f64>() / d.len().max(1) as f64)
     };
     scans.iter().map(one).collect()
+}
+
+/// Pieces of the thing this large stand off as wholes.
+const REGION_M: f64 = 20e-3;
+const FEWEST_IN_REGION: f64 = 100.0;
+
+/// The mean distance of each piece of the thing from the truth after the alignment of all, and the sigma that is stated of
+/// such: root mean square over its points. In metres.
+pub fn regions(sweep: &Sweep, scans: &[Scan]) -> Vec<[f64; 2]> {
+    let (mut points, mut variances) = (Vec::new(), Vec::new());
+    for scan in scans {
+        for (point, _) in inliers(sweep, scan) {
+            points.push(Point3::from(point.position_m).cast::<f64>());
+            variances.push(scan.region_sigma_m.powi(2));
+        }
+    }
+    let motion = align(&sweep.truth, &points);
+    let off = distances(&sweep.truth, &points, &motion);
+    let mut regions: BTreeMap<_, [f64; 3]> = BTreeMap::new();
+    for ((point, (distance, triangle)), variance) in points.iter().zip(off).zip(variances) {
+        if triangle < sweep.thing_triangles {
+            let normal = sweep.truth.normal(triangle);
+            let side = (normal.iamax(), normal[normal.iamax()] > 0.0);
+            let cell = point.coords.map(|x| (x / REGION_M).floor() as i32);
+            let sums = regions.entry((side, [cell.x, cell.y, cell.z])).or_default();
+            *sums = [sums[0] + 1.0, sums[1] + distance, sums[2] + variance];
+        }
+    }
+    let large = regions.into_values().filter(|sums| sums[0] >= FEWEST_IN_REGION);
+    large.map(|[count, distance, variance]| [distance / count, (variance / count).sqrt()]).collect()
 }
 
 /// The shares of inliers that are at most one and two stated sigmas from the truth, after the alignment of all.

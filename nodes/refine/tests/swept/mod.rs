@@ -207,6 +207,7 @@ impl Sweep {
                 world_from_camera: rigid_to_wire(&world_from_camera),
                 position_sigma_m: 0.0,
                 rotation_sigma_rad: 0.0,
+                region_sigma_m: 0.0,
                 points: profile.points.iter().map(place).collect(),
                 refused: vec![],
             })
