@@ -72,6 +72,17 @@ proptest! {
     }
 }
 
+/// A camera of so long a lens sees nothing of the stripe: the sweep would be of a thousand million lanes.
+#[test]
+fn a_stripe_that_is_no_stripe_is_refused_with_its_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = folder.path().join("rig.toml");
+    let long: Vec<&str> = PAPER.lines().map(|line| if line.starts_with("fy = ") { "fy = 1e9" } else { line }).collect();
+    std::fs::write(&rig, long.join("\n")).unwrap();
+    let refused = Setup { rig, ..Setup::default() }.open().unwrap_err().to_string();
+    assert!(refused.contains("mm of the stripe") && refused.contains("[camera]"), "{refused}");
+}
+
 #[test]
 fn as_they_are_they_open() {
     let folder = tempfile::tempdir().unwrap();

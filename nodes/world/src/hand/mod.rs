@@ -29,6 +29,17 @@ pub enum HandError {
     /// The scene's subject has no vertices.
     #[error("the scene shows nothing to scan")]
     Nothing,
+    /// The stripe is so short beside the thing that no hand would go over all of it.
+    #[error(
+        "the camera sees {stripe_mm:.3} mm of the stripe at the stand-off, and the thing is {size_mm:.0} mm large: more than \
+         {MOST_LANES:.0} lanes side by side are no sweep; check the rig's [camera] fx and fy, and the thing's size"
+    )]
+    Lanes {
+        /// The usable length of the stripe.
+        stripe_mm: f64,
+        /// The largest side of the thing.
+        size_mm: f64,
+    },
     /// The handset cannot measure.
     #[error(transparent)]
     Rig(#[from] RigError),
@@ -59,6 +70,8 @@ const AIMING_S: f64 = 0.3;
 const STRIPE_SHARE: f64 = 0.8;
 /// The stripe is no longer than this at the stand-off (paper, section 3: 12 cm).
 const STRIPE_LIMIT_M: f64 = 0.12;
+/// Strokes side by side over the thing.
+const MOST_LANES: f64 = 200.0;
 const STAND_OFF_HZ: [f64; 2] = [0.05, 0.5];
 const PACE_HZ: [f64; 2] = [0.1, 0.6];
 const SWAY_HZ: [f64; 2] = [0.15, 2.0];
@@ -76,7 +89,11 @@ impl Hand {
         let error = Simulation::from_rig(rig)?.hand_eye_error;
         let passes = if section.two_passes { 2.0 } else { 1.0 };
         let budget_m = section.speed_limit_mm_per_s * METRES_PER_MM * seconds / passes;
-        let strokes = plan::plan(&reach, stripe_length_m(rig, reach.stand_off_m), budget_m, section.crossing_strokes);
+        let (stripe_m, size_m) = (stripe_length_m(rig, reach.stand_off_m), 2.0 * reach.half.max());
+        if size_m.is_nan() || size_m > MOST_LANES * stripe_m {
+            return Err(HandError::Lanes { stripe_mm: stripe_m / METRES_PER_MM, size_mm: size_m / METRES_PER_MM });
+        }
+        let strokes = plan::plan(&reach, stripe_m, budget_m, section.crossing_strokes);
         let [mm, degrees] = [METRES_PER_MM, 1f64.to_radians()];
         let human =
             |rms: f64, band: [f64; 2], stream: u64| Sway::new(rms, band, seed.wrapping_mul(16).wrapping_add(stream));
