@@ -10,7 +10,8 @@ element! {
         pub position_m: [f32; 3],
         /// Unit vector from the point to the camera.
         pub to_sensor: [f32; 3],
-        /// One standard deviation of the position along `to_sensor`, pose error not included.
+        /// One standard deviation of the position along `to_sensor`; of the pose's error it has what differs from picture to
+        /// picture, where that is known (`refine`).
         pub sigma_m: f32,
         /// Height of the peak above the background, in grey levels.
         pub amplitude: f32,
@@ -28,8 +29,8 @@ layout! {
         pub position_sigma_m: f64,
         /// One standard deviation of its orientation.
         pub rotation_sigma_rad: f64,
-        /// One standard deviation of what moves all that was seen here alike, along `to_sensor`, however many pictures saw it:
-        /// it does not average out. 0 where nobody knows.
+        /// One standard deviation of how far the regions seen here may stand off as wholes, along their normals (root mean
+        /// square over them): however many pictures saw them, it does not average out. 0 where nobody knows.
         pub region_sigma_m: f64,
         /// The points.
         pub points: Bulk<ScanPoint>,

@@ -25,10 +25,11 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// `None` when anything in it is not finite.
+    /// `None` when anything in it, or what its region shares, is not finite.
     pub fn new(point: &ScanPoint, region_sigma_m: f32, picture: u16) -> Option<Self> {
         let ScanPoint { position_m, to_sensor, sigma_m, .. } = *point;
-        let sum = position_m[0] + position_m[1] + position_m[2] + to_sensor[0] + to_sensor[1] + to_sensor[2] + sigma_m;
+        let sigmas = sigma_m + region_sigma_m;
+        let sum = position_m[0] + position_m[1] + position_m[2] + to_sensor[0] + to_sensor[1] + to_sensor[2] + sigmas;
         // One that is not finite makes the sum so; a finite sum that overflows is refused as well, rightly.
         sum.is_finite().then(|| Self {
             position_m,

@@ -125,9 +125,10 @@ fn what_is_not_finite_or_far_away_is_counted_once_and_spoils_nothing() {
     ];
     let mut clusterer = BallClusterer::new(Config::default()).unwrap();
     clusterer.insert(&scan(0, good.iter().chain(&bad).copied().collect()));
+    clusterer.insert(&Scan { region_sigma_m: f64::NAN, ..scan(0, vec![point([0.0; 3])]) });
     let refused = clusterer.changes().refused;
     let told: Vec<(&str, u64)> = refused.iter().map(|r| (r.reason.as_str(), r.count)).collect();
-    assert_eq!(told, [("point not finite", 4), ("point out of range", 1)]);
+    assert_eq!(told, [("point not finite", 5), ("point out of range", 1)]);
     let mut clean = BallClusterer::new(Config::default()).unwrap();
     clean.insert(&scan(0, good));
     assert_eq!(clusterer.whole(), clean.whole());

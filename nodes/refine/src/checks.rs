@@ -2,12 +2,13 @@
 
 use crate::banded::Banded;
 use crate::gather::Gathered;
+use crate::prior::{Beliefs, Prior};
 use crate::scene::{Problem, right_jacobian};
-use crate::schur::{Room, frame_data, product};
+use crate::schur::{Room, frame_data, product, shaken};
 use crate::spline::Knots;
 use crate::surfel::{Member, Patch};
 use crate::tracker::Smoothed;
-use crate::unknowns::Unknowns;
+use crate::unknowns::{Free, SPLINES, Unknowns};
 use geometry::uniform;
 use geometry::{Smoothing, TimedPose};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
@@ -151,6 +152,50 @@ fn the_eliminated_system_is_symmetric_and_has_no_negative_direction() {
     }
 }
 
+/// Along any direction the forces of draws have the variance that the product gives.
+#[test]
+fn draws_are_as_wide_as_the_system_says() {
+    const FRAMES: usize = 9;
+    const DRAWS: u64 = 4000;
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let flat = |forces: &[Vector6<f64>]| forces.iter().flat_map(|f| f.iter().copied()).collect::<Vec<f64>>();
+    let patches = plane_patches(FRAMES as u32);
+    let mut room = Room::new(&patches, FRAMES);
+    let unknowns = Unknowns { splines: [0.5, 0.7, 1.1].map(|step_s| Knots::over(0.0, 3.0, step_s)) };
+    let beliefs = Beliefs {
+        white: [1e-3, 1e-2],
+        inflation: [1.0, 2.0],
+        smoothness: [1e5, 1e3],
+        tremor: [3e-4, 5e-3],
+        bias: [1e-3, 1e-2],
+        field: [2e-3, 2e-2],
+        hand_eye: [1e-3, 1e-2],
+        clock_s: 0.01,
+        lag_s: 0.01,
+    };
+    let times: Vec<f64> = (0..300).map(|i| 0.01 * f64::from(i)).collect();
+    let prior = Prior::new(&unknowns, &times, &beliefs);
+    let free = Free { splines: [true; SPLINES], field: true, hand_eye: true, clock: true, lag: true };
+    for seed in 0..3 {
+        let moves: Vec<Vector6<f64>> =
+            (0..FRAMES).map(|k| Vector6::from_fn(|i, _| uniform(seed, (6 * k + i) as u64) - 0.5)).collect();
+        let wanted = dot(&flat(&moves), &flat(&product(&patches, 3.0, &moves, &mut room)));
+        let mut along = |draw| dot(&flat(&moves), &flat(&shaken(&patches, 3f64.sqrt(), draw, &mut room)));
+        let found = (0..DRAWS).map(|draw| along(draw).powi(2)).sum::<f64>() / DRAWS as f64;
+        assert!((found / wanted - 1.0).abs() < 0.1, "data: {found} of {wanted}");
+        // Each unknown in its own unit, or the stiffest would hide all others.
+        let v: Vec<f64> = (0..unknowns.len()).map(|i| uniform(seed, i as u64) - 0.5).collect();
+        let mut stiff = vec![0.0; v.len()];
+        prior.add_product(&unknowns, &free, &v, &mut stiff);
+        let v: Vec<f64> = v.iter().zip(&stiff).map(|(v, stiff)| v / stiff.abs().max(1.0).sqrt()).collect();
+        let mut answer = vec![0.0; v.len()];
+        prior.add_product(&unknowns, &free, &v, &mut answer);
+        let along = |draw| dot(&v, &prior.shaken(&unknowns, &free, draw));
+        let found = (0..DRAWS).map(|draw| along(draw).powi(2)).sum::<f64>() / DRAWS as f64;
+        assert!((found / dot(&v, &answer) - 1.0).abs() < 0.1, "prior: {found} of {}", dot(&v, &answer));
+    }
+}
+
 #[test]
 fn what_moves_all_frames_as_one_piece_costs_nothing() {
     const FRAMES: usize = 9;
@@ -184,6 +229,11 @@ fn a_banded_matrix_is_solved_and_inverted_as_a_full_one() {
     let mut x = right.as_slice().to_vec();
     factor.solve(&mut x);
     assert!((&inverse * right - nalgebra::DVector::from_vec(x)).norm() < 1e-10);
+    // L L^T, column by column.
+    let unit = nalgebra::DMatrix::<f64>::identity(SIZE, SIZE);
+    let columns = (0..SIZE).map(|k| factor.product(unit.column(k).as_slice()));
+    let lower = nalgebra::DMatrix::from_columns(&columns.map(nalgebra::DVector::from_vec).collect::<Vec<_>>());
+    assert!((&lower * lower.transpose() - full).norm() < 1e-10);
     let part = factor.inverse_band();
     for row in 0..SIZE {
         for column in row.saturating_sub(5)..=row {

@@ -73,12 +73,14 @@ pub(crate) fn finish(
     let poses = problem.poses(x);
     // What was held fast is not known the better for it.
     let unknown = Free { hand_eye: true, clock: true, ..solution.free };
-    let few = judged.seen.thinned(ONE_SURFEL_IN);
+    let few = judged.seen.thinned(ONE_SURFEL_IN, config.seed);
+    let information_m2 = judged.information_m2 * few.weight / judged.seen.weight;
+    let few = if kept { few } else { few.unheard() };
     let system = System::new(problem, &prior, &few, &unknown, &poses);
-    let regions = region_sigmas_m(&system, judged.information_m2 * ONE_SURFEL_IN as f64, config.seed);
+    let regions = region_sigmas_m(&system, information_m2, solver::cg_steps(problem), config.seed);
     let mut out = outcome(config, problem, &prior, judged, &regions, x);
     let carved = carve(&mut out.frames);
-    let (clock, hand_eye) = globals(problem, &prior, &wide_after.thinned(ONE_SURFEL_IN), solution.free, x);
+    let (clock, hand_eye) = globals(problem, &prior, &wide_after.thinned(ONE_SURFEL_IN, config.seed), solution.free, x);
     let observed =
         Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: held.directions };
     let evidence = Evidence {

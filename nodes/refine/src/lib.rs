@@ -18,7 +18,9 @@
 //! `precondition`). Where the thing stands on a flat table, all strokes that saw it agree by it (`table`). The schedule
 //! goes from surfels of 14 mm to 5 mm (`schedule`). The smoothed tracker stands for all readings in the prior (`prior`).
 //! In the end the whole is laid rigidly onto the smoothed tracker's cloud (`gauge`):
-//! where the scan lies in the world no surface tells.
+//! where the scan lies in the world no surface tells. How far whole regions may still stand off, as no overlap tells, is
+//! drawn from what the scan leaves open (`posterior`) and goes with each frame ([`wire::Scan::region_sigma_m`]; 0 in live
+//! revisions, which do not ask).
 //!
 //! # Guards
 //!

@@ -20,6 +20,13 @@ pub(crate) struct FrameData {
     pub members: u32,
 }
 
+impl FrameData {
+    /// Of a frame without members.
+    pub fn none() -> Self {
+        Self { hessian: Matrix6::zeros(), force: Vector6::zeros(), members: 0 }
+    }
+}
+
 /// Fewer frames are not worth a thread: where others work as well, each hand-over may cost a time slice.
 pub(crate) const FRAMES_A_TASK: usize = 2048;
 
@@ -49,10 +56,10 @@ impl Patch {
         starts.zip(&self.ends).map(|(start, &end)| &self.members[start as usize..end as usize])
     }
 
-    /// One in so many surfels.
-    pub fn thinned(&self, one_in: usize) -> Self {
+    /// The surfels of which `is_kept` is true.
+    pub fn thinned(&self, mut is_kept: impl FnMut() -> bool) -> Self {
         let mut thinned = Self::default();
-        for (members, middle) in self.surfels().zip(&self.middles).step_by(one_in) {
+        for (members, middle) in self.surfels().zip(&self.middles).filter(|_| is_kept()) {
             thinned.members.extend_from_slice(members);
             thinned.ends.push(thinned.members.len() as u32);
             thinned.middles.push(*middle);
@@ -127,7 +134,7 @@ fn forces(
 
 /// Right side and diagonal blocks, times `weight`.
 pub(crate) fn frame_data(patches: &[Patch], weight: f64, frames: usize) -> Vec<FrameData> {
-    let none = FrameData { hessian: Matrix6::zeros(), force: Vector6::zeros(), members: 0 };
+    let none = FrameData::none();
     let parts: Vec<Vec<FrameData>> = patches
         .par_iter()
         .map(|patch| {

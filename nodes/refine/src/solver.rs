@@ -120,7 +120,8 @@ const MOST_STEPS: usize = 8;
 const CG_FRAMES: usize = 32_000;
 const MOST_CG_STEPS: usize = 180;
 
-fn cg_steps(problem: &Problem) -> usize {
+/// Steps of conjugate gradients for such a scan.
+pub(crate) fn cg_steps(problem: &Problem) -> usize {
     (CG_FRAMES / problem.frames.len().max(1)).clamp(CG_STEPS, MOST_CG_STEPS)
 }
 

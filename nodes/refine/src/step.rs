@@ -8,6 +8,7 @@ use crate::surfel::{Patch, SurfelPlan, build};
 use crate::system::System;
 use crate::table;
 use crate::unknowns::Free;
+use geometry::word;
 
 /// What a step works with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,12 +42,24 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// One in so many surfels, each standing for as many.
-    pub fn thinned(&self, one_in: usize) -> Self {
-        let patches: Vec<Patch> = self.patches.iter().map(|patch| patch.thinned(one_in)).collect();
-        let weight = self.weight * one_in as f64;
+    /// About one in so many surfels, picked by `seed`, which stand for all: their weight is larger.
+    pub fn thinned(&self, one_in: u64, seed: u64) -> Self {
+        let mut number = 0..;
+        let mut is_kept = || number.next().is_some_and(|i| word(seed, i).is_multiple_of(one_in));
+        let patches: Vec<Patch> = self.patches.iter().map(|patch| patch.thinned(&mut is_kept)).collect();
+        let members = |patches: &[Patch]| patches.iter().map(|patch| patch.members.len()).sum::<usize>();
+        let weight = self.weight * members(&self.patches) as f64 / members(&patches).max(1) as f64;
         let frames = frame_data(&patches, weight, self.frames.len());
         Self { patches, frames, weight, ..*self }
+    }
+
+    /// As if the members had said nothing.
+    pub fn unheard(mut self) -> Self {
+        self.weight = 0.0;
+        for frame in &mut self.frames {
+            *frame = FrameData { members: frame.members, ..FrameData::none() };
+        }
+        self
     }
 }
 

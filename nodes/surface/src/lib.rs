@@ -36,7 +36,8 @@
 //!
 //! * Edges sharper than R are rounded. Sheets back to back may be as near as two cells; seen from the same side, as three.
 //! * The surface ends about 0.3 R past the last samples. A point of the cloud that has fewer than five neighbours is not used.
-//! * The sigma holds what the residuals and the samples' own sigmas say. Caps have the radius of the hole for their sigma, since nothing was measured there; where they run through
+//! * The sigma holds what the residuals and the samples' own sigmas say; what samples of one voxel share is averaged as if
+//!   they did not. Caps have the radius of the hole for their sigma, since nothing was measured there; where they run through
 //!   a ragged rim they may cut the surface.
 //! * [`Surfer::live_mesh`] is not cleaned, and its cell follows the cloud as it grows; the final mesh depends on the points
 //!   alone, bit for bit, however they came and on however many threads.

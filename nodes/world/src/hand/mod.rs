@@ -31,8 +31,8 @@ pub enum HandError {
     Nothing,
     /// The stripe is so short beside the thing that no hand would go over all of it.
     #[error(
-        "the camera sees {stripe_mm:.3} mm of the stripe at the stand-off, and the thing is {size_mm:.0} mm large: more than \
-         {MOST_LANES:.0} lanes side by side are no sweep; check the rig's [camera] fx and fy, and the thing's size"
+        "the camera sees {stripe_mm:.1e} mm of the stripe at the stand-off, and the thing is {size_mm:.0} mm large: more than \
+         {MOST_LANES:.0} lanes side by side are no sweep; check width, height, fx and fy of the rig's [camera], and the thing's size"
     )]
     Lanes {
         /// The usable length of the stripe.
@@ -70,7 +70,7 @@ const AIMING_S: f64 = 0.3;
 const STRIPE_SHARE: f64 = 0.8;
 /// The stripe is no longer than this at the stand-off (paper, section 3: 12 cm).
 const STRIPE_LIMIT_M: f64 = 0.12;
-/// Strokes side by side over the thing.
+/// No more strokes than this side by side over the thing.
 const MOST_LANES: f64 = 200.0;
 const STAND_OFF_HZ: [f64; 2] = [0.05, 0.5];
 const PACE_HZ: [f64; 2] = [0.1, 0.6];
