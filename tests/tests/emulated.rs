@@ -79,9 +79,9 @@ fn the_model_is_that_of_the_simulated_tracker(tracker: &Tracker, step_mm: f64) -
     println!("the models are {median:.4} mm apart in the median; sigma {sigma:.4} mm");
     assert!(median < 0.67 * sigma, "{median} mm; sigma {sigma} mm\n{said}");
     // Noise alone lets one surface close a hole and leaves it open in the other; and where there is no good pose, there is no
-    // good surface. But most of the poses are good.
+    // good surface: a place is seen twice or more, and one bad pose of two spoils it. But most of the poses are good.
     println!("{share:.3} are within 0.25 mm; {near:.3} of the poses are, and {alike:.3} where noise alone differs");
-    assert!(near > 0.5 && share > near * alike, "{share}; {near} of the poses, {alike} by noise alone\n{said}");
+    assert!(near > 0.5 && share > near * near * alike, "{share}; {near} of the poses, {alike} by noise alone\n{said}");
     said
 }
 
