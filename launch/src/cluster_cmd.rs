@@ -5,7 +5,7 @@ use crate::units::Unit;
 use anyhow::{Result, bail};
 use cluster::BallClusterer;
 use std::path::PathBuf;
-use wire::{Bulk, CloudPoint, Header, Phase, RigidPose, Scan, ScanPoint};
+use wire::{Bulk, CloudPoint, Header, Phase, Scan, ScanPoint};
 
 /// Examples for `--help`.
 pub const HELP: &str = "Examples:
@@ -35,13 +35,8 @@ pub fn run(args: &Args) -> Result<()> {
     let points = formats::cloud::read(&args.points)?;
     let metres = args.unit.metres();
     clusterer.insert(&Scan {
-        header: Header { phase: Phase::Shape, ..Header::default() },
-        world_from_camera: RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        region_sigma_m: 0.0,
         points: points.iter().map(|point| scanned(point, metres)).collect::<Bulk<ScanPoint>>(),
-        refused: Vec::new(),
+        ..Scan::none(Header { phase: Phase::Shape, ..Header::default() })
     });
     let cloud = clusterer.whole();
     for refusal in &cloud.refused {

@@ -29,15 +29,7 @@ impl Private {
 }
 
 fn scan(stamp_nanos: i64) -> Scan {
-    Scan {
-        header: Header { stamp_nanos, phase: Phase::Shape, ..Header::default() },
-        world_from_camera: wire::RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        region_sigma_m: 0.0,
-        points: Bulk(vec![]),
-        refused: vec![],
-    }
+    Scan { points: Bulk(vec![]), ..Scan::none(Header { stamp_nanos, phase: Phase::Shape, ..Header::default() }) }
 }
 
 fn wait_for<M: Message>(bus: &Bus, input: &mut Subscriber<M>) -> M {

@@ -38,7 +38,7 @@ pub use distance::{
 pub use index::{Closest, Hit, MeshIndex};
 pub use mesh::{MeshError, TriangleMesh};
 pub use pose::{interpolate, rigid_from_wire, rigid_to_wire};
-pub use random::{uniform, word};
+pub use random::{sign, uniform, word};
 pub use raster::{LONGEST_EDGE_PX, NO_TRIANGLE, VisibilityBuffer};
 pub use rig::{ClockSection, LaserSection, Rig, RigError, TransformSection};
 pub use sample::{SurfaceSample, sample_surface};

@@ -12,3 +12,8 @@ pub fn word(seed: u64, index: u64) -> u64 {
 pub fn uniform(seed: u64, index: u64) -> f64 {
     (word(seed, index) >> 11) as f64 / (1u64 << 53) as f64
 }
+
+/// 1 or -1, evenly.
+pub fn sign(seed: u64, index: u64) -> f64 {
+    if word(seed, index) & 1 == 0 { 1.0 } else { -1.0 }
+}

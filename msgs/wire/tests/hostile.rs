@@ -37,15 +37,7 @@ fn samples() -> Vec<Vec<u8>> {
 }
 
 fn scan(points: usize) -> Scan {
-    Scan {
-        header: Header::default(),
-        world_from_camera: RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        region_sigma_m: 0.0,
-        points: Bulk(vec![ScanPoint::default(); points]),
-        refused: vec![],
-    }
+    Scan { points: Bulk(vec![ScanPoint::default(); points]), ..Scan::none(Header::default()) }
 }
 
 proptest! {

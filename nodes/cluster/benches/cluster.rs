@@ -3,7 +3,7 @@
 use cluster::{BallClusterer, Config};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use wire::{Header, Phase, RigidPose, Scan, ScanPoint};
+use wire::{Header, Phase, Scan, ScanPoint};
 
 const POINTS_PER_SCAN: usize = 1000;
 
@@ -30,13 +30,8 @@ fn sweep(scans: usize) -> Vec<Scan> {
             }
         };
         Scan {
-            header: Header { phase: Phase::Shape, stamp_nanos: s as i64, ..Header::default() },
-            world_from_camera: RigidPose::IDENTITY,
-            position_sigma_m: 0.0,
-            rotation_sigma_rad: 0.0,
-            region_sigma_m: 0.0,
             points: (0..POINTS_PER_SCAN).map(point).collect(),
-            refused: vec![],
+            ..Scan::none(Header { phase: Phase::Shape, stamp_nanos: s as i64, ..Header::default() })
         }
     };
     (0..scans).map(scan).collect()

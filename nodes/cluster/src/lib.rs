@@ -25,16 +25,11 @@
 //!
 //! ```
 //! use cluster::{BallClusterer, Config};
-//! use wire::{Header, Phase, RigidPose, Scan, ScanPoint};
+//! use wire::{Header, Phase, Scan, ScanPoint};
 //! let at = |x: f32, z: f32| ScanPoint { position_m: [x, 0.0, z], to_sensor: [0.0, 0.0, 1.0], sigma_m: 1e-4, amplitude: 90.0 };
 //! let scan = Scan {
-//!     header: Header { phase: Phase::Shape, ..Header::default() },
-//!     world_from_camera: RigidPose::IDENTITY,
-//!     position_sigma_m: 0.0,
-//!     rotation_sigma_rad: 0.0,
-//!     region_sigma_m: 0.0,
 //!     points: vec![at(0.0, 0.0), at(0.0002, 0.0001), at(-0.0002, -0.0001), at(0.05, 0.0)].into(),
-//!     refused: vec![],
+//!     ..Scan::none(Header { phase: Phase::Shape, ..Header::default() })
 //! };
 //! let mut clusterer = BallClusterer::new(Config { ball_radius_m: 0.0008, least_points: 3, ..Config::default() }).unwrap();
 //! clusterer.insert(&scan);

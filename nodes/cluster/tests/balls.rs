@@ -2,20 +2,15 @@
 
 use cluster::{BallClusterer, Config, ConfigError, Table};
 use proptest::prelude::*;
-use wire::{Extent, Header, Phase, RigidPose, Scan, ScanPoint};
+use wire::{Extent, Header, Phase, Scan, ScanPoint};
 
 const RADIUS_M: f32 = 0.05;
 const NOISE_M: f32 = 1e-4;
 
 fn scan(revision: u32, points: Vec<ScanPoint>) -> Scan {
     Scan {
-        header: Header { phase: Phase::Shape, revision, stamp_nanos: 5, ..Header::default() },
-        world_from_camera: RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        region_sigma_m: 0.0,
         points: points.into(),
-        refused: vec![],
+        ..Scan::none(Header { phase: Phase::Shape, revision, stamp_nanos: 5, ..Header::default() })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use cluster::{BallClusterer, Config};
 use proptest::prelude::*;
-use wire::{Cloud, CloudPoint, Extent, Header, Phase, RigidPose, Scan, ScanPoint};
+use wire::{Cloud, CloudPoint, Extent, Header, Phase, Scan, ScanPoint};
 
 const D: f32 = 1e-3;
 const T: u32 = 3;
@@ -15,13 +15,8 @@ fn scan(points: &[[f32; 3]]) -> Scan {
     let point =
         |&position_m: &[f32; 3]| ScanPoint { position_m, to_sensor: [0.0, 0.0, 1.0], sigma_m: 1e-4, amplitude: 1.0 };
     Scan {
-        header: Header { phase: Phase::Shape, ..Header::default() },
-        world_from_camera: RigidPose::IDENTITY,
-        position_sigma_m: 0.0,
-        rotation_sigma_rad: 0.0,
-        region_sigma_m: 0.0,
         points: points.iter().map(point).collect(),
-        refused: vec![],
+        ..Scan::none(Header { phase: Phase::Shape, ..Header::default() })
     }
 }
 

@@ -7,6 +7,7 @@ use crate::judge::{Judgement, judge};
 use crate::notices::{missing_stroke, notice_solution, notice_surface};
 use crate::outcome::outcome;
 use crate::posterior::{ONE_SURFEL_IN, region_sigmas_m};
+use crate::prior::Prior;
 use crate::refinement::Refinement;
 use crate::scene::{Placed, Problem};
 use crate::schedule::{judging, wide};
@@ -70,14 +71,7 @@ pub(crate) fn finish(
     let (problem, x, judged, noise) =
         if kept { (&problem, &solution.x, &after, solution.noise) } else { (&still, &zeros, &before, noise) };
     let prior = solver::prior(config, &noise, problem);
-    let poses = problem.poses(x);
-    // What was held fast is not known the better for it.
-    let unknown = Free { hand_eye: true, clock: true, ..solution.free };
-    let few = judged.seen.thinned(ONE_SURFEL_IN, config.seed);
-    let information_m2 = judged.information_m2 * few.weight / judged.seen.weight;
-    let few = if kept { few } else { few.unheard() };
-    let system = System::new(problem, &prior, &few, &unknown, &poses);
-    let regions = region_sigmas_m(&system, information_m2, solver::cg_steps(problem), config.seed);
+    let regions = regions_sigma_m(config, problem, &prior, judged, solution.free, kept, x);
     let mut out = outcome(config, problem, &prior, judged, &regions, x);
     let carved = carve(&mut out.frames);
     let (clock, hand_eye) = globals(problem, &prior, &wide_after.thinned(ONE_SURFEL_IN, config.seed), solution.free, x);
@@ -99,6 +93,26 @@ pub(crate) fn finish(
         frames: out.kept,
     };
     Ok(Refinement { trajectory: out.trajectory, evidence, frames: out.frames })
+}
+
+/// See [`region_sigmas_m`]; where the refined way is not given out, of the smoothed one.
+fn regions_sigma_m(
+    config: &Config,
+    problem: &Problem,
+    prior: &Prior,
+    judged: &Judgement,
+    free: Free,
+    kept: bool,
+    x: &[f64],
+) -> Vec<f64> {
+    let poses = problem.poses(x);
+    // What was held fast is not known the better for it.
+    let unknown = Free { hand_eye: true, clock: true, ..free };
+    let few = judged.seen.thinned(ONE_SURFEL_IN, config.seed);
+    let information_m2 = judged.information_m2 * few.weight / judged.seen.weight;
+    let few = if kept { few } else { few.unheard() };
+    let system = System::new(problem, prior, &few, &unknown, &poses);
+    region_sigmas_m(&system, information_m2, solver::cg_steps(problem), config.seed)
 }
 
 /// Whether the refined way is given out: it must fit better, and something must have been seen twice.

@@ -23,11 +23,6 @@ const SOFT: f64 = 1e-6;
 
 type Surfel<'a> = (&'a [Member], &'a SurfelMiddle);
 
-/// 1 or -1, evenly.
-pub(crate) fn sign(seed: u64, index: u64) -> f64 {
-    if word(seed, index) & 1 == 0 { 1.0 } else { -1.0 }
-}
-
 /// For each frame one standard deviation, in metres, of the surface that it saw: root mean square over its memberships. A
 /// frame without any has the median of the others; 0 when nothing can be told.
 pub(crate) fn region_sigmas_m(system: &System, information_m2: f64, cg_steps: usize, seed: u64) -> Vec<f64> {

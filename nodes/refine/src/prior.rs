@@ -6,9 +6,9 @@
 //! between the hand's movement and its tremor (2 to 8 Hz) go free, and where few strokes cross the surface does not hold it.
 
 use crate::banded::Banded;
-use crate::posterior::sign;
 use crate::spline::Knots;
 use crate::unknowns::{BIAS, Free, GLOBALS, MONOMIALS, NOISE, SPLINES, TREMOR, Unknowns};
+use geometry::sign;
 
 /// Standard deviations of the unknowns, in metres, radians and seconds; pairs are (position, rotation).
 #[derive(Debug, Clone, Copy, PartialEq)]

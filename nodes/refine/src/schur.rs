@@ -4,8 +4,8 @@
 //! d^T J~^T (I - Psi Psi^T) J~ d with J~ = sqrt(w) J and Psi = sqrt(w) phi L^-T, where L L^T = sum w phi phi^T (+ ridge).
 //! Psi^T Psi <= I, so what is left is symmetric and positive semi-definite whatever single precision does to Psi.
 
-use crate::posterior::sign;
 use crate::surfel::{Member, Patch};
+use geometry::sign;
 use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
 

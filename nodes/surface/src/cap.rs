@@ -29,11 +29,16 @@ pub fn edge(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
+/// Length of a closed loop, in metres.
+pub fn length_m(rim: &[Vector3<f32>]) -> f32 {
+    let at = |k: usize| rim[k % rim.len()];
+    (0..rim.len()).map(|k| (at(k + 1) - at(k)).norm()).sum()
+}
+
 impl Cap {
     /// The cap over a rim, as coarse as the rim allows.
-    pub fn over(sheet: &Sheet, rim: &[u32]) -> Self {
-        let positions: Vec<Vector3<f32>> = rim.iter().map(|&v| sheet.positions[v as usize]).collect();
-        Self { triangles: least_area::triangulate(&positions), rim: rim.len(), positions, taken: Edges::default() }
+    pub fn over(rim: Vec<Vector3<f32>>) -> Self {
+        Self { triangles: least_area::triangulate(&rim), rim: rim.len(), positions: rim, taken: Edges::default() }
     }
 
     /// In square metres.
@@ -43,8 +48,7 @@ impl Cap {
 
     /// Length of the rim, in metres.
     pub fn length_m(&self) -> f32 {
-        let at = |k: usize| self.positions[k % self.rim];
-        (0..self.rim).map(|k| (at(k + 1) - at(k)).norm()).sum()
+        length_m(&self.positions[..self.rim])
     }
 
     /// Makes its triangles as small as those around it, and adds it to the mesh. `taken` has the edges between vertices of

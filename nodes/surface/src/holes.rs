@@ -1,6 +1,6 @@
 //! Holes in the final mesh: found as rims, closed by caps.
 
-use crate::cap::{Cap, Edges, edge};
+use crate::cap::{Cap, Edges, edge, length_m};
 use crate::grid::KeyHash;
 use crate::ground::Ground;
 use crate::sheet::Sheet;
@@ -14,9 +14,7 @@ const LARGEST: f32 = 1.0 / 3.0;
 
 /// Fills every hole whose rim is at most pi times `largest_m` long.
 pub fn fill(sheet: &mut Sheet, largest_m: f64, ground: Option<&Ground>) {
-    let mut caps = over_all(sheet);
-    caps.retain(|(_, cap)| f64::from(cap.length_m()) <= PI * largest_m);
-    sew(sheet, caps, ground);
+    sew(sheet, over_all(sheet, PI * largest_m), ground);
 }
 
 /// Closes every hole that is left, whatever its size, but those over which the cap would be larger than a third of all that
@@ -25,20 +23,20 @@ pub fn fill(sheet: &mut Sheet, largest_m: f64, ground: Option<&Ground>) {
 pub fn close(sheet: &mut Sheet, ground: Option<&Ground>) -> u64 {
     let measured_m2: f32 = sheet.triangles.iter().map(|&triangle| area_m2(&sheet.positions, triangle)).sum();
     let is_small = |cap: &Cap| cap.area_m2() <= LARGEST * measured_m2;
-    let (guessed, left_open): (Vec<_>, Vec<_>) = over_all(sheet)
+    let (guessed, left_open): (Vec<_>, Vec<_>) = over_all(sheet, f64::INFINITY)
         .into_iter()
         .partition(|(_, cap)| is_small(cap) || ground.is_some_and(|ground| stands(cap, ground)));
     sew(sheet, guessed, ground);
     left_open.len() as u64
 }
 
-/// All rims, each with its cap.
-fn over_all(sheet: &Sheet) -> Vec<(Vec<u32>, Cap)> {
+/// All rims up to a length, each with its cap.
+fn over_all(sheet: &Sheet, longest_m: f64) -> Vec<(Vec<u32>, Cap)> {
     let with_cap = |rim: Vec<u32>| {
-        let cap = Cap::over(sheet, &rim);
-        (rim, cap)
+        let places: Vec<_> = rim.iter().map(|&v| sheet.positions[v as usize]).collect();
+        (f64::from(length_m(&places)) <= longest_m).then(|| (rim, Cap::over(places)))
     };
-    rims(sheet).into_par_iter().map(with_cap).collect()
+    rims(sheet).into_par_iter().filter_map(with_cap).collect()
 }
 
 /// Whether a rim is as low as what stands on the table, on the whole.
