@@ -58,6 +58,31 @@ fn each_lag_gains_and_states_what_it_gained() {
     }
 }
 
+/// Moments that share a fit are as good as if each had waited by itself.
+#[test]
+fn settled_moments_share_a_fit() {
+    let readings = Tracker::PAPER.readings(&Hand::USUAL, 20, 3);
+    let (smoother, hand) = (smoother(&readings), Hand::USUAL);
+    let moments: Vec<i64> =
+        readings.iter().map(|r| r.stamp_nanos).filter(|t| (1000..19_000).contains(&(t / MS))).collect();
+    let (mut found, mut rest) = (Vec::new(), &moments[..]);
+    while !rest.is_empty() {
+        let settled = smoother.settled(rest, 250 * MS).unwrap();
+        assert!((1..=5).contains(&settled.len()), "readings come every 10 ms, fits every 50");
+        found.extend(rest.iter().zip(settled).map(|(stamp, pose)| (*stamp, pose.unwrap().pose)));
+        rest = &rest[found.len() - (moments.len() - rest.len())..];
+    }
+    assert_eq!(found.len(), moments.len());
+    let alone = moments.iter().map(|stamp| (*stamp, smoother.at(*stamp, &wait(275, 0)).unwrap().pose));
+    let (together, alone) = (rms(&hand, found.into_iter()), rms(&hand, alone));
+    assert!(together.0 < 1.02 * alone.0 && together.1 < 1.02 * alone.1, "{together:?} {alone:?}");
+    assert_eq!(smoother.settled(&[19_800 * MS], 250 * MS), Err(NoPose::After));
+    assert_eq!(smoother.settled(&[], 250 * MS), Ok(vec![]));
+    assert_eq!(smoother.settled(&[-50 * MS], 250 * MS), Ok(vec![Err(NoPose::Before)]));
+    assert_eq!(smoother.settled(&[i64::MIN, i64::MAX], 250 * MS), Ok(vec![Err(NoPose::Before)]));
+    assert_eq!(smoother.settled(&[i64::MAX], i64::MAX), Err(NoPose::After));
+}
+
 #[test]
 fn a_noisy_tracker_is_predicted_and_a_fine_one_waited_for() {
     // 3 ms behind a reading, 7 ms before the next.
@@ -178,6 +203,8 @@ proptest! {
                 prop_assert_eq!(answer, late.at(stamp, &wait));
                 asked.next();
             }
+            let settled = live.settled(&frames, wait.lag_nanos);
+            prop_assert!(settled == Err(NoPose::After) || settled == late.settled(&frames, wait.lag_nanos));
         }
         for stamp in asked {
             prop_assert_eq!(late.at(stamp, &wait), Err(NoPose::After));

@@ -12,7 +12,7 @@ pub(crate) enum Between {
 }
 
 /// Samples of the camera's way are told so long behind the newest reading: from then on they gain nothing any more.
-const WAY: Wait = Wait { lag_nanos: 300_000_000, predict_nanos: 0 };
+const WAY_LAG_NANOS: i64 = 250_000_000;
 
 impl Between {
     pub(crate) fn new(config: &Config) -> Result<Self, SmoothError> {
@@ -67,11 +67,14 @@ impl Between {
         }
     }
 
-    /// For the camera's way, which can wait.
-    pub(crate) fn settled(&self, stamp_nanos: i64) -> Result<TimedPose, NoPose> {
+    /// For the camera's way, which can wait: of the first one or more of these moments.
+    pub(crate) fn settled(&self, moments: &[i64]) -> Result<Vec<Result<TimedPose, NoPose>>, NoPose> {
         match self {
-            Self::Smooth { smoother, .. } => smoother.at(stamp_nanos, &WAY),
-            Self::Straight(straight) => straight.at(stamp_nanos),
+            Self::Smooth { smoother, .. } => smoother.settled(moments, WAY_LAG_NANOS),
+            Self::Straight(straight) => match moments.first().map(|moment| straight.at(*moment)) {
+                Some(Err(NoPose::After)) => Err(NoPose::After),
+                first => Ok(Vec::from_iter(first)),
+            },
         }
     }
 

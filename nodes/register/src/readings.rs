@@ -127,14 +127,15 @@ impl Readings {
     /// will come any more.
     pub(crate) fn tell(&mut self, ended: bool) -> Vec<TimedPose> {
         let mut way = Vec::new();
-        while let Some(&stamp_nanos) = self.untold.front() {
-            match self.between.settled(stamp_nanos) {
-                Err(NoPose::After) if !ended => break,
-                Err(NoPose::After) => way.extend(self.between.at_end(stamp_nanos)),
-                // No rotation was measured around it: the way has no sample there.
-                pose => way.extend(pose),
-            }
-            self.untold.pop_front();
+        while let Some(&next) = self.untold.front() {
+            // No rotation was measured around it: the way has no sample there.
+            let settled = match self.between.settled(self.untold.make_contiguous()) {
+                Err(_) if !ended => break,
+                Err(_) => vec![self.between.at_end(next)],
+                Ok(settled) => settled,
+            };
+            self.untold.drain(..settled.len());
+            way.extend(settled.into_iter().flatten());
         }
         way
     }

@@ -151,9 +151,9 @@ impl Register {
     }
 
     /// Where the camera was at the readings since the last call, as far as that is known by now; `None` when there was
-    /// none. The smooth way is told 0.3 s behind the newest reading; a reading whose rotation is older than its position,
-    /// when the rotation at that moment is known; the rest once the scan is finished. After a new scan began, the first
-    /// call tells the rest of the scan before.
+    /// none. The smooth way is told 0.25 to 0.3 s behind the newest reading, a twentieth of a second at a time; a reading
+    /// whose rotation is older than its position, when the rotation at that moment is known; the rest once the scan is
+    /// finished. After a new scan began, the first call tells the rest of the scan before.
     pub fn trajectory(&mut self) -> Option<Trajectory> {
         self.older_ways.pop_front().or_else(|| self.way(self.finished))
     }

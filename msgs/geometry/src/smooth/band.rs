@@ -7,7 +7,7 @@ use nalgebra::SVector;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Band(Vec<[f64; 4]>);
 
-/// L D L' with ones on the diagonal of L; D is kept at place 0 of each row.
+/// L D L' with ones on the diagonal of L; the inverse of D is kept at place 0 of each row, for divisions are slow.
 pub(super) struct Factor(Vec<[f64; 4]>);
 
 /// A pivot that lost so many digits says that the readings do not hold all control points.
@@ -59,14 +59,14 @@ impl Band {
             }
             let mut pivot = diagonal;
             for back in 1..=i.min(3) {
-                let scaled = rows[i][back] / rows[i - back][0];
+                let scaled = rows[i][back] * rows[i - back][0];
                 pivot -= scaled * rows[i][back];
                 rows[i][back] = scaled;
             }
             if pivot.is_nan() || pivot <= LEAST_PIVOT * diagonal {
                 return None;
             }
-            rows[i][0] = pivot;
+            rows[i][0] = 1.0 / pivot;
         }
         Some(Factor(self.0))
     }
@@ -83,7 +83,7 @@ impl Factor {
             }
         }
         for i in (0..rows.len()).rev() {
-            x[i] /= rows[i][0];
+            x[i] *= rows[i][0];
             for ahead in 1..=(rows.len() - 1 - i).min(3) {
                 let known = x[i + ahead] * rows[i + ahead][ahead];
                 x[i] -= known;
@@ -97,7 +97,7 @@ impl Factor {
         for i in (0..l.len()).rev() {
             let reach = (l.len() - 1 - i).min(3);
             for column in (0..=reach).rev() {
-                let mut value = if column == 0 { 1.0 / l[i][0] } else { 0.0 };
+                let mut value = if column == 0 { l[i][0] } else { 0.0 };
                 for k in 1..=reach {
                     let (low, high) = (k.min(column), k.max(column));
                     value -= l[i + k][k] * z.0[i + high][high - low];

@@ -33,11 +33,11 @@ fn vertex(scores: &[f64], best: usize) -> f64 {
 
 /// The mean square leave-one-out error.
 fn score<const D: usize>(runs: &[Run<D>], lambda: f64) -> Option<f64> {
-    let mut squares = Vec::with_capacity(runs.iter().map(|run| run.samples.len()).sum());
+    let mut squares = Vec::with_capacity(runs.iter().map(|run| run.samples().len()).sum());
     for run in runs {
         // A run that lost too many readings as outliers says nothing.
         let Some(spline) = run.solve(lambda) else { continue };
-        let active = run.samples.iter().zip(run.residuals(&spline)).filter(|(sample, _)| sample.active);
+        let active = run.samples().iter().zip(run.residuals(&spline)).filter(|(sample, _)| sample.active);
         squares.extend(active.map(|(sample, r)| sample.weight * r.off.norm_squared() / r.own_share().powi(2)));
     }
     let count = squares.len();

@@ -1,11 +1,11 @@
 //! The smooth way while the readings still come.
 
+use super::answer::{Fitted, Moment, Tuning, between, judged};
 use super::part::{Part, WINDOW_NANOS, around};
 use super::readings::{is_finite, positions, rotations, turn};
 use super::track::Track;
 use super::{SmoothError, Smoothing};
-use crate::{NoPose, TimedPose, TrajectoryBuffer};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use crate::{NoPose, TimedPose};
 
 /// How far behind the newest reading a pose is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,42 +37,14 @@ struct Reading {
     rotation_nanos: Option<i64>,
 }
 
-/// How stiff the splines are from a moment on, and how noisy the readings.
-#[derive(Debug, Clone, Copy)]
-struct Tuning {
-    stamp_nanos: i64,
-    position: Part,
-    rotation: Part,
-}
-
-/// Whether there will be a better moment to answer.
-#[derive(Debug, Clone, Copy)]
-enum Moment {
-    Early,
-    Due,
-}
-
-/// A smooth pose; the variance is the larger of position's and rotation's, in units of a reading's.
-struct Smooth {
-    pose: TimedPose,
-    variance: f64,
-    beside_outlier: bool,
-}
-
 /// Both are chosen anew from the readings of so long...
 const TUNING_NANOS: i64 = 4_000_000_000;
 /// ... so often,
 const TUNE_EVERY_NANOS: i64 = 500_000_000;
 /// and at these counts of readings, so that the first frames are smooth too.
 const FIRST_TUNINGS: [u64; 4] = [16, 32, 64, 128];
-/// A pose that is answered before the reading behind it has come is at least as sure as one between two readings: on a
-/// straight line its variance is 1 at either and 1/2 half-way, 2/3 in the mean.
-const EARLY_VARIANCE: f64 = 2.0 / 3.0;
-/// A smooth pose that is less sure than a reading gives way to the readings around it,
-const MOST_VARIANCE: f64 = 1.0;
-/// unless one of them is an outlier; then it stands up to here.
-const MOST_BESIDE_OUTLIER: f64 = 100.0;
-
+/// Moments of one such time are answered together.
+const SETTLE_NANOS: i64 = 50_000_000;
 impl FixedLagSmoother {
     /// Without readings.
     pub fn new(config: Smoothing) -> Result<Self, SmoothError> {
@@ -170,47 +142,56 @@ impl FixedLagSmoother {
         self.answer(stamp_nanos, self.readings.len(), Moment::Due)
     }
 
+    /// The poses at the first of some moments in order, those that lie in one twentieth of a second: one fit serves them
+    /// all. It is made from the readings up to the first one that is `lag_nanos` behind that time; before it has come:
+    /// [`NoPose::After`].
+    pub fn settled(&self, moments: &[i64], lag_nanos: i64) -> Result<Vec<Result<TimedPose, NoPose>>, NoPose> {
+        let period = |stamp_nanos: i64| stamp_nanos.div_euclid(SETTLE_NANOS);
+        let Some(&first) = moments.first() else { return Ok(Vec::new()) };
+        let moments = &moments[..moments.partition_point(|&moment| period(moment) <= period(first))];
+        let begins = period(first).saturating_mul(SETTLE_NANOS);
+        let ends = begins.saturating_add(SETTLE_NANOS);
+        let until = ends.saturating_add(lag_nanos);
+        let has_come = |r: &Reading| r.pose.stamp_nanos >= until && r.rotation_nanos.is_some_and(|at| at >= until);
+        let behind = self.readings.partition_point(|r| r.pose.stamp_nanos < until);
+        let last = behind + self.readings[behind..].iter().position(has_come).ok_or(NoPose::After)?;
+        let (position, rotation) = self.around(begins, last + 1);
+        let fitted = self.fit(&position, &rotation, ends);
+        let at = |&moment: &i64| {
+            let straight = between(&position, &rotation, moment, self.config.most_gap_nanos());
+            let smooth = fitted.as_ref().and_then(|fitted| fitted.at(moment));
+            judged(straight, smooth, Moment::Due)
+        };
+        Ok(moments.iter().map(at).collect())
+    }
+
     /// From the readings before index `end`.
     fn answer(&self, stamp_nanos: i64, end: usize, moment: Moment) -> Result<TimedPose, NoPose> {
-        let from = stamp_nanos.saturating_sub(WINDOW_NANOS);
-        // One more, so that a silence before the moment is seen as one.
-        let first = self.readings.partition_point(|r| r.pose.stamp_nanos < from).saturating_sub(1).min(end);
-        let (position, rotation) = self.rows(first, end);
+        let (position, rotation) = self.around(stamp_nanos, end);
         let straight = between(&position, &rotation, stamp_nanos, self.config.most_gap_nanos());
         if let Err(NoPose::Before | NoPose::Gap) = straight {
             return straight;
         }
-        match (moment, self.smooth(&position, &rotation, stamp_nanos)) {
-            (Moment::Early, Some(smooth)) if smooth.variance <= EARLY_VARIANCE => Ok(smooth.pose),
-            (Moment::Early, _) => Err(NoPose::After),
-            (Moment::Due, Some(smooth)) if smooth.variance <= MOST_VARIANCE => Ok(smooth.pose),
-            (Moment::Due, Some(smooth)) if smooth.beside_outlier => {
-                if smooth.variance <= MOST_BESIDE_OUTLIER {
-                    Ok(smooth.pose)
-                } else {
-                    Err(NoPose::Gap)
-                }
-            }
-            (Moment::Due, _) => straight,
-        }
+        let fitted = self.fit(&position, &rotation, stamp_nanos);
+        judged(straight, fitted.and_then(|fitted| fitted.at(stamp_nanos)), moment)
     }
 
     /// `None` before anything is known of the noise, or when the readings are too few.
-    fn smooth(&self, position: &[TimedPose], rotation: &[TimedPose], stamp_nanos: i64) -> Option<Smooth> {
-        let newest = position.last()?;
+    fn fit(&self, position: &[TimedPose], rotation: &[TimedPose], last_nanos: i64) -> Option<Fitted> {
+        let newest = *position.last()?;
         let known = self.tunings.partition_point(|t| t.stamp_nanos <= newest.stamp_nanos);
-        let tuning = self.tunings.get(known.checked_sub(1)?)?;
-        let place = tuning.position.solve(around(positions(position), stamp_nanos), stamp_nanos, &self.config)?;
-        let turned = tuning.rotation.solve(around(rotations(rotation), stamp_nanos), stamp_nanos, &self.config)?;
-        let rotation = UnitQuaternion::from_quaternion(Quaternion::from(turned.value));
-        let pose = TimedPose {
-            stamp_nanos,
-            pose: Isometry3::from_parts(Translation3::from(place.value), rotation),
-            position_sigma_m: tuning.position.sigma(place.variance, newest.position_sigma_m),
-            rotation_sigma_rad: tuning.rotation.sigma(turned.variance, newest.rotation_sigma_rad),
-        };
-        let variance = place.variance.max(turned.variance);
-        Some(Smooth { pose, variance, beside_outlier: place.beside_outlier || turned.beside_outlier })
+        let tuning = *self.tunings.get(known.checked_sub(1)?)?;
+        let position = tuning.position.fit(around(positions(position), last_nanos), last_nanos, &self.config)?;
+        let rotation = tuning.rotation.fit(around(rotations(rotation), last_nanos), last_nanos, &self.config)?;
+        Some(Fitted { tuning, position, rotation, newest })
+    }
+
+    /// The readings that tell of a moment, up to index `end`.
+    fn around(&self, stamp_nanos: i64, end: usize) -> (Vec<TimedPose>, Vec<TimedPose>) {
+        let from = stamp_nanos.saturating_sub(WINDOW_NANOS);
+        // One more, so that a silence before the moment is seen as one.
+        let first = self.readings.partition_point(|r| r.pose.stamp_nanos < from).saturating_sub(1).min(end);
+        self.rows(first, end)
     }
 
     /// Positions and rotations of some readings, each with its own stamp.
@@ -218,29 +199,5 @@ impl FixedLagSmoother {
         let readings = &self.readings[first..end];
         let turned = |r: &Reading| r.rotation_nanos.map(|stamp_nanos| TimedPose { stamp_nanos, ..r.pose });
         (readings.iter().map(|r| r.pose).collect(), readings.iter().filter_map(turned).collect())
-    }
-}
-
-/// Without smoothing: each part between its two neighbours.
-fn between(
-    position: &[TimedPose],
-    rotation: &[TimedPose],
-    stamp_nanos: i64,
-    gap_nanos: i64,
-) -> Result<TimedPose, NoPose> {
-    let at = |row: &[TimedPose]| {
-        let mut buffer = TrajectoryBuffer::default();
-        let near = row.partition_point(|r| r.stamp_nanos < stamp_nanos).saturating_sub(1);
-        row[near..].iter().take(2).for_each(|reading| {
-            buffer.push(*reading);
-        });
-        buffer.at(stamp_nanos, gap_nanos)
-    };
-    match (at(position), at(rotation)) {
-        (Ok(place), Ok(turned)) => {
-            let pose = Isometry3::from_parts(place.pose.translation, turned.pose.rotation);
-            Ok(TimedPose { pose, rotation_sigma_rad: turned.rotation_sigma_rad, ..place })
-        }
-        (Err(NoPose::After), Err(other)) | (Err(other), _) | (_, Err(other)) => Err(other),
     }
 }

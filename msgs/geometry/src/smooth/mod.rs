@@ -28,6 +28,7 @@
 //! assert!(way.at(-1).is_none() && way.gaps().is_empty());
 //! ```
 
+mod answer;
 mod band;
 mod basis;
 mod choose;

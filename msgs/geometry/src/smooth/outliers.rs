@@ -32,7 +32,7 @@ impl Known {
 
     /// From the noise of all runs, so that one that is all outliers is known by the others.
     pub(super) fn from<const D: usize>(runs: &[Run<D>], lambda: f64) -> Self {
-        let blocks_of = |run: &Run<D>| run.solve(lambda).map(|spline| blocks(&lengths(run, &spline)));
+        let blocks_of = |run: &Run<D>| run.solve(lambda).map(|spline| blocks(&lengths(run, run.residuals(&spline))));
         let mut all: Vec<f64> = runs.iter().filter_map(blocks_of).flatten().collect();
         all.sort_unstable_by(f64::total_cmp);
         let noisier = all.get((all.len() as f64 * NOISIER) as usize).copied();
@@ -56,15 +56,15 @@ pub(super) fn mark<const D: usize>(
     let mut spline = run.solve(lambda)?;
     for _ in 0..ROUNDS {
         let off = far_off(run, &spline, outlier_sigmas, known);
-        let farthest: Vec<usize> = (0..off.len()).filter(|&i| leads(&run.samples, &off, i)).collect();
-        let bent: Vec<usize> = (0..off.len()).filter(|&i| !run.samples[i].active && off[i] == 0.0).collect();
+        let farthest: Vec<usize> = (0..off.len()).filter(|&i| leads(run.samples(), &off, i)).collect();
+        let bent: Vec<usize> = (0..off.len()).filter(|&i| !run.samples()[i].active && off[i] == 0.0).collect();
         if farthest.is_empty() && bent.is_empty() {
             break;
         }
-        farthest.iter().for_each(|&i| run.samples[i].active = false);
+        run.set_active(&farthest, false);
         // Only at the end, or the next farthest might be bent back.
         if farthest.is_empty() {
-            bent.iter().for_each(|&i| run.samples[i].active = true);
+            run.set_active(&bent, true);
         }
         spline = run.solve(lambda)?;
         if farthest.is_empty() {
@@ -75,8 +75,8 @@ pub(super) fn mark<const D: usize>(
 }
 
 /// How far off each reading is, whatever its own weight.
-fn lengths<const D: usize>(run: &Run<D>, spline: &Spline<D>) -> Vec<f64> {
-    run.samples.iter().zip(run.residuals(spline)).map(|(sample, r)| studentised(sample.weight, &r)).collect()
+fn lengths<const D: usize>(run: &Run<D>, residuals: impl Iterator<Item = Residual<D>>) -> Vec<f64> {
+    run.samples().iter().zip(residuals).map(|(sample, r)| studentised(sample.weight, &r)).collect()
 }
 
 /// One standard deviation of the noise on each axis, block by block.
@@ -92,16 +92,17 @@ fn blocks(lengths: &[f64]) -> Vec<f64> {
 
 /// By how much each reading is beyond the bound, in noise; 0 within it.
 fn far_off<const D: usize>(run: &Run<D>, spline: &Spline<D>, outlier_sigmas: f64, known: Known) -> Vec<f64> {
-    let lengths = lengths(run, spline);
+    let residuals: Vec<Residual<D>> = run.residuals(spline).collect();
+    let lengths = lengths(run, residuals.iter().copied());
     let blocks = blocks(&lengths);
-    let beyond = |(i, (sample, residual)): (usize, (&Sample<D>, Residual<D>))| {
+    let beyond = |(i, (sample, residual)): (usize, (&Sample<D>, &Residual<D>))| {
         // A left-out reading is compared with a spline that knows nothing of it.
         let unsure = if sample.active { 0.0 } else { spline.variance(sample.stamp_nanos).unwrap_or(0.0) };
         let noise = blocks[i / BLOCK].min(known.most).max(known.least).max(LEAST_NOISE);
         let sigmas = lengths[i] / (noise * (1.0 + sample.weight * unsure).sqrt());
         if sigmas > outlier_sigmas && residual.off.norm() > sample.stated { sigmas } else { 0.0 }
     };
-    run.samples.iter().zip(run.residuals(spline)).enumerate().map(beyond).collect()
+    run.samples().iter().zip(&residuals).enumerate().map(beyond).collect()
 }
 
 /// True for the farthest off among its neighbours that are not marked yet.

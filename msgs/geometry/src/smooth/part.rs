@@ -1,7 +1,7 @@
-//! Position or rotation at one moment, from the readings around it.
+//! Position or rotation at some moments, from the readings around them.
 
 use super::outliers::{self, Known};
-use super::run::{Run, Sample};
+use super::run::{Run, Sample, Spline};
 use super::track::{LEAST_READINGS, SPLIT_NANOS, Track};
 use super::{Smoothing, readings};
 use nalgebra::SVector;
@@ -22,6 +22,12 @@ pub(super) struct Part {
     sigma: f64,
 }
 
+/// The spline through the readings around some moments.
+pub(super) struct Fit<const D: usize> {
+    run: Run<D>,
+    spline: Spline<D>,
+}
+
 /// At the moment that was asked.
 pub(super) struct Found<const D: usize> {
     pub value: SVector<f64, D>,
@@ -36,14 +42,14 @@ impl Part {
         Self { lambda: track.lambda, sigma: readings::rms(&track.sigma) }
     }
 
-    /// `None` when the readings are too few or too long ago.
-    pub(super) fn solve<const D: usize>(
+    /// For moments up to `last_nanos`. `None` when the readings are too few or too long ago.
+    pub(super) fn fit<const D: usize>(
         &self,
         samples: Vec<Sample<D>>,
-        stamp_nanos: i64,
+        last_nanos: i64,
         config: &Smoothing,
-    ) -> Option<Found<D>> {
-        let ahead = stamp_nanos.saturating_sub(samples.last()?.stamp_nanos);
+    ) -> Option<Fit<D>> {
+        let ahead = last_nanos.saturating_sub(samples.last()?.stamp_nanos);
         if samples.len() < LEAST_READINGS || ahead > WINDOW_NANOS {
             return None;
         }
@@ -51,12 +57,10 @@ impl Part {
         let noise = if D == 4 { 0.5 * self.sigma } else { self.sigma };
         let [stiff, known] =
             [STIFF_MISFIT, LEAST_MISFIT].map(|misfit| Known { least: noise.max(misfit), ..Known::NOTHING });
-        let mut run = Run::new(samples, config.knot_nanos(), stamp_nanos)?;
+        let mut run = Run::new(samples, config.knot_nanos(), last_nanos)?;
         outliers::mark_gross(&mut run, config.outlier_sigmas, stiff);
         let spline = outliers::mark(&mut run, self.lambda, config.outlier_sigmas, known)?;
-        let behind = run.samples.partition_point(|s| s.stamp_nanos < stamp_nanos);
-        let beside_outlier = run.samples[behind.saturating_sub(1)..].iter().take(2).any(|sample| !sample.active);
-        Some(Found { value: spline.at(stamp_nanos)?, variance: spline.variance(stamp_nanos)?, beside_outlier })
+        Some(Fit { run, spline })
     }
 
     /// One standard deviation of a pose of this variance. What the tracker states beyond its white noise changes slowly,
@@ -65,6 +69,19 @@ impl Part {
         let white = self.sigma * self.sigma;
         let slow = if stated.is_finite() { (stated * stated - white).max(0.0) } else { 0.0 };
         (variance * white + slow).sqrt()
+    }
+}
+
+impl<const D: usize> Fit<D> {
+    pub(super) fn at(&self, stamp_nanos: i64) -> Option<Found<D>> {
+        let samples = self.run.samples();
+        let behind = samples.partition_point(|s| s.stamp_nanos < stamp_nanos);
+        let beside_outlier = samples[behind.saturating_sub(1)..].iter().take(2).any(|sample| !sample.active);
+        Some(Found {
+            value: self.spline.at(stamp_nanos)?,
+            variance: self.spline.variance(stamp_nanos)?,
+            beside_outlier,
+        })
     }
 }
 

@@ -21,12 +21,21 @@ pub(super) struct Sample<const D: usize> {
 /// Readings and the control points that act on them.
 #[derive(Debug, Clone)]
 pub(super) struct Run<const D: usize> {
-    pub samples: Vec<Sample<D>>,
+    samples: Vec<Sample<D>>,
+    /// Of each sample the first control point that acts on it, and the weights of four.
+    places: Vec<(usize, [f64; 4])>,
     knot_nanos: i64,
     first_knot: i64,
-    controls: usize,
     /// Subtracted from all values, so that digits are spent on what changes.
     origin: SVector<f64, D>,
+    normal: Normal<D>,
+}
+
+/// The normal equations of the samples that are active, without the penalty: the same for every lambda.
+#[derive(Debug, Clone)]
+struct Normal<const D: usize> {
+    matrix: Band,
+    right: Vec<SVector<f64, D>>,
 }
 
 /// A reading against the spline through all readings.
@@ -54,34 +63,40 @@ impl<const D: usize> Run<D> {
         let (first, last) = (samples.first()?.stamp_nanos, samples.last()?.stamp_nanos.max(until_nanos));
         let first_knot = Place::of(first, knot_nanos).knot;
         let controls = usize::try_from(Place::of(last, knot_nanos).knot - first_knot).ok()? + 4;
+        let place = |sample: &Sample<D>| {
+            let place = Place::of(sample.stamp_nanos, knot_nanos);
+            ((place.knot - first_knot) as usize, place.weights())
+        };
+        let places: Vec<_> = samples.iter().map(place).collect();
         let origin = samples.iter().map(|s| s.value).sum::<SVector<f64, D>>() / samples.len() as f64;
-        Some(Self { samples, knot_nanos, first_knot, controls, origin })
+        let normal = Normal::new(&samples, &places, origin, controls);
+        Some(Self { samples, places, knot_nanos, first_knot, origin, normal })
+    }
+
+    /// In the order of time.
+    pub(super) fn samples(&self) -> &[Sample<D>] {
+        &self.samples
+    }
+
+    /// Takes samples in, or leaves them out.
+    pub(super) fn set_active(&mut self, which: &[usize], active: bool) {
+        if !which.is_empty() {
+            which.iter().for_each(|&i| self.samples[i].active = active);
+            self.normal = Normal::new(&self.samples, &self.places, self.origin, self.normal.right.len());
+        }
     }
 
     /// The lambda at which a sway of so many Hz comes out halved: its sixth power against the readings between two knots.
     pub(super) fn lambda_of(&self, hz: f64) -> f64 {
-        let knots = (self.controls - 3) as f64;
+        let knots = (self.normal.right.len() - 3) as f64;
         self.samples.len() as f64 / knots / (std::f64::consts::TAU * hz * self.knot_nanos as f64 * 1e-9).powi(6)
-    }
-
-    fn place(&self, stamp_nanos: i64) -> (usize, [f64; 4]) {
-        let place = Place::of(stamp_nanos, self.knot_nanos);
-        ((place.knot - self.first_knot) as usize, place.weights())
     }
 
     /// `None` when the readings do not hold a quadratic.
     pub(super) fn solve(&self, lambda: f64) -> Option<Spline<D>> {
-        let mut normal = Band::zeros(self.controls);
-        let mut controls = vec![SVector::zeros(); self.controls];
-        for sample in self.samples.iter().filter(|s| s.active) {
-            let (first, weights) = self.place(sample.stamp_nanos);
-            normal.add_outer(first, &weights, sample.weight);
-            for (control, weight) in controls[first..].iter_mut().zip(weights) {
-                *control += (sample.value - self.origin) * (weight * sample.weight);
-            }
-        }
-        normal.add_third_differences(lambda);
-        let factor = normal.factor()?;
+        let Normal { mut matrix, right: mut controls } = self.normal.clone();
+        matrix.add_third_differences(lambda);
+        let factor = matrix.factor()?;
         factor.solve(&mut controls);
         controls.iter_mut().for_each(|control| *control += self.origin);
         let inverse = factor.inverse();
@@ -90,11 +105,23 @@ impl<const D: usize> Run<D> {
 
     /// In the order of the readings.
     pub(super) fn residuals<'a>(&'a self, spline: &'a Spline<D>) -> impl Iterator<Item = Residual<D>> + 'a {
-        self.samples.iter().map(|sample| {
-            let (first, weights) = self.place(sample.stamp_nanos);
+        self.samples.iter().zip(&self.places).map(|(sample, &(first, weights))| {
             let leverage = if sample.active { sample.weight * spline.inverse.quadratic(first, &weights) } else { 0.0 };
             Residual { off: sample.value - blend(&weights, &spline.controls[first..]), leverage }
         })
+    }
+}
+
+impl<const D: usize> Normal<D> {
+    fn new(samples: &[Sample<D>], places: &[(usize, [f64; 4])], origin: SVector<f64, D>, controls: usize) -> Self {
+        let (mut matrix, mut right) = (Band::zeros(controls), vec![SVector::zeros(); controls]);
+        for (sample, &(first, weights)) in samples.iter().zip(places).filter(|(sample, _)| sample.active) {
+            matrix.add_outer(first, &weights, sample.weight);
+            for (control, weight) in right[first..].iter_mut().zip(weights) {
+                *control += (sample.value - origin) * (weight * sample.weight);
+            }
+        }
+        Self { matrix, right }
     }
 }
 

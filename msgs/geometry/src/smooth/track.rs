@@ -48,7 +48,7 @@ impl<const D: usize> Track<D> {
         runs.iter_mut().for_each(|run| outliers::mark_gross(run, config.outlier_sigmas, Known::NOTHING));
         let lambda = choose(&runs)?;
         let left_out =
-            |runs: &[Run<D>]| -> Vec<bool> { runs.iter().flat_map(|r| &r.samples).map(|s| !s.active).collect() };
+            |runs: &[Run<D>]| -> Vec<bool> { runs.iter().flat_map(|r| r.samples()).map(|s| !s.active).collect() };
         let gross = left_out(&runs);
         let known = Known::from(&runs, lambda);
         for run in &mut runs {
@@ -60,7 +60,7 @@ impl<const D: usize> Track<D> {
         let mut stamps = Vec::with_capacity(readings);
         for run in &runs {
             let Some(spline) = run.solve(lambda) else { continue };
-            let active = || run.samples.iter().zip(run.residuals(&spline)).filter(|(sample, _)| sample.active);
+            let active = || run.samples().iter().zip(run.residuals(&spline)).filter(|(sample, _)| sample.active);
             for (sample, residual) in active() {
                 let off = axes(&(sample.value - residual.off), &residual.off);
                 squares += off.component_mul(&off) * sample.weight;
@@ -69,7 +69,7 @@ impl<const D: usize> Track<D> {
             let from = stamps.len();
             stamps.extend(active().map(|(sample, _)| sample.stamp_nanos));
             let (Some(&first_nanos), Some(&last_nanos)) = (stamps.get(from), stamps.last()) else { continue };
-            used += run.samples.len();
+            used += run.samples().len();
             stretches.push(Stretch { first_nanos, last_nanos, spline });
         }
         Some(Self {
