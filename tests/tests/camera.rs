@@ -50,7 +50,7 @@ struct Filled {
 impl Opener for Memory {
     fn open(&mut self) -> Result<Box<dyn Device>, Trouble> {
         let stride = self.format.least_stride(WIDTH).unwrap_or_default() as u32;
-        let layout = Layout { format: self.format, width: WIDTH, height: HEIGHT, stride };
+        let layout = Layout { format: self.format, full_range: false, width: WIDTH, height: HEIGHT, stride };
         let buffers = (0..BUFFERS).map(|number| picture(self.format, number)).collect();
         Ok(Box::new(Filled { buffers, layout, sequence: 0, began_nanos: monotonic_nanos() }))
     }

@@ -57,7 +57,13 @@ impl Device for Open {
         let nanos = monotonic_nanos();
         Ok(Some(Exposed {
             bytes: &self.picture,
-            layout: Layout { format: DriverFormat::Grey, width: WIDTH, height: HEIGHT, stride: WIDTH },
+            layout: Layout {
+                format: DriverFormat::Grey,
+                full_range: false,
+                width: WIDTH,
+                height: HEIGHT,
+                stride: WIDTH,
+            },
             stamp: DriverStamp { nanos, flags: 0x2000, arrival_nanos: nanos },
             sequence: self.sequence,
             damaged: false,

@@ -64,21 +64,13 @@ pub fn write_frame(path: &Path, frame: &Frame) -> Result<(), FormatError> {
     let (bytes, colour): (Vec<u8>, _) = match frame.format {
         PixelFormat::Grey8 => (rows.flatten().copied().collect(), ExtendedColorType::L8),
         PixelFormat::Rgb8 => (rows.flatten().copied().collect(), ExtendedColorType::Rgb8),
-        PixelFormat::Yuyv => (rows.flat_map(|row| yuyv_row(row, frame.width)).collect(), ExtendedColorType::Rgb8),
+        format @ (PixelFormat::Yuyv | PixelFormat::YuyvFull) => {
+            let width = frame.width as usize;
+            let pixels = rows.flat_map(|row| (0..width).flat_map(move |u| format.rgb(row, u)));
+            (pixels.collect(), ExtendedColorType::Rgb8)
+        }
     };
     write_whole(path, |out| Ok(encoder(out).write_image(&bytes, frame.width, frame.height, colour)?))
-}
-
-/// One row of YUYV as red, green, blue (ITU-R BT.601, full range, as webcams send it).
-fn yuyv_row(row: &[u8], width: u32) -> Vec<u8> {
-    let pixels = row.chunks_exact(4).flat_map(|pair| {
-        let [u, v] = [pair[1], pair[3]].map(|c| f32::from(c) - 128.0);
-        [pair[0], pair[2]].into_iter().flat_map(move |y| {
-            let y = f32::from(y);
-            [y + 1.402 * v, y - 0.344_136 * u - 0.714_136 * v, y + 1.772 * u].map(|c| c.round() as u8)
-        })
-    });
-    pixels.take(3 * width as usize).collect()
 }
 
 /// Camera noise does not compress, so the quick way loses nothing.

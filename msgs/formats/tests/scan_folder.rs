@@ -77,16 +77,18 @@ fn what_was_written_is_read() {
 
 #[test]
 fn yuyv_is_written_in_colour() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut writer = ScanFolderWriter::create(folder.path(), &Rig::parse(RIG).unwrap()).unwrap();
-    let mut frame = frame(0, Phase::Colour, Light { laser: false, lamp: true }, PixelFormat::Yuyv);
-    frame.data = [76, 85, 76, 255].repeat(8 * 8).into();
-    writer.frame(&frame).unwrap();
-    writer.pose(&pose(0, Quality::Good));
-    writer.save().unwrap();
-    let read = ScanFolder::open(folder.path()).unwrap().frame(0).unwrap().unwrap();
-    assert_eq!(read.format, PixelFormat::Rgb8);
-    assert_eq!(&read.data[..3], [254, 0, 0], "BT.601 red");
+    for (format, red) in [(PixelFormat::Yuyv, [81, 90, 81, 240]), (PixelFormat::YuyvFull, [76, 85, 76, 255])] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = ScanFolderWriter::create(folder.path(), &Rig::parse(RIG).unwrap()).unwrap();
+        let mut frame = frame(0, Phase::Colour, Light { laser: false, lamp: true }, format);
+        frame.data = red.repeat(8 * 8).into();
+        writer.frame(&frame).unwrap();
+        writer.pose(&pose(0, Quality::Good));
+        writer.save().unwrap();
+        let read = ScanFolder::open(folder.path()).unwrap().frame(0).unwrap().unwrap();
+        assert_eq!(read.format, PixelFormat::Rgb8);
+        assert_eq!(&read.data[..3], [254, 0, 0], "BT.601 red, {format:?}");
+    }
 }
 
 /// A good folder with one file replaced.

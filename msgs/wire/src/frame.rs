@@ -1,7 +1,7 @@
 //! A picture, with the time of its exposure (paper, section 3: the colour camera).
 
 use crate::layout::{layout, message};
-use crate::{Bulk, Header};
+use crate::{Bulk, Header, YCbCr};
 
 layout! {
     /// How the bytes of a picture are laid out.
@@ -10,8 +10,10 @@ layout! {
         Grey8,
         /// Three bytes a pixel: red, green, blue.
         Rgb8,
-        /// Four bytes for two pixels: Y0 U Y1 V.
+        /// Four bytes for two pixels, Y0 Cb Y1 Cr: [`YCbCr::LIMITED`].
         Yuyv,
+        /// The same over all levels: [`YCbCr::FULL`].
+        YuyvFull,
     }
 }
 
@@ -22,9 +24,36 @@ impl PixelFormat {
         match self {
             Self::Grey8 => width,
             Self::Rgb8 => 3 * width,
-            Self::Yuyv => 2 * width.next_multiple_of(2),
+            Self::Yuyv | Self::YuyvFull => 2 * width.next_multiple_of(2),
         }
     }
+
+    /// What its bytes stand for, when they are not light itself.
+    pub const fn ycbcr(self) -> Option<YCbCr> {
+        match self {
+            Self::Grey8 | Self::Rgb8 => None,
+            Self::Yuyv => Some(YCbCr::LIMITED),
+            Self::YuyvFull => Some(YCbCr::FULL),
+        }
+    }
+
+    /// Red, green and blue of pixel `u` of a row of a checked frame.
+    #[inline]
+    pub fn rgb(self, row: &[u8], u: usize) -> [u8; 3] {
+        match self {
+            Self::Grey8 => [row[u]; 3],
+            Self::Rgb8 => [row[3 * u], row[3 * u + 1], row[3 * u + 2]],
+            Self::Yuyv => YCbCr::LIMITED.rgb8(of_pair(row, u)),
+            Self::YuyvFull => YCbCr::FULL.rgb8(of_pair(row, u)),
+        }
+    }
+}
+
+/// Y, Cb and Cr of pixel `u` in a row of YUYV: two pixels share their colour.
+#[inline]
+fn of_pair(row: &[u8], u: usize) -> [u8; 3] {
+    let pair = 4 * (u / 2);
+    [row[2 * u], row[pair + 1], row[pair + 3]]
 }
 
 layout! {
@@ -63,7 +92,7 @@ layout! {
         pub data: Bulk<u8>,
     }
 }
-message!(Frame @ 1, data);
+message!(Frame @ 2, data);
 
 /// Why the bytes of a frame cannot be what its header says.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -40,6 +40,7 @@ mod scan;
 mod stripe;
 pub mod topic;
 mod trajectory;
+mod ycbcr;
 
 pub use bulk::Bulk;
 pub use calibration::{Calibration, CameraIntrinsics, LaserPlane, PeaksPer};
@@ -57,6 +58,7 @@ pub use refinement::{FrameFit, Observed, Refinement};
 pub use scan::{Scan, ScanPoint};
 pub use stripe::{Stripe, StripePeak};
 pub use trajectory::{Trajectory, TrajectorySample};
+pub use ycbcr::YCbCr;
 
 #[cfg(target_endian = "big")]
 compile_error!("bulk arrays travel as little-endian bytes; a big-endian machine would need a swap in bulk.rs");

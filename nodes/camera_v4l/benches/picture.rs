@@ -21,7 +21,7 @@ fn exposed(format: DriverFormat) -> Exposed {
     }
     Exposed {
         bytes,
-        layout: Layout { format, width: WIDTH, height: HEIGHT, stride: stride as u32 },
+        layout: Layout { format, full_range: false, width: WIDTH, height: HEIGHT, stride: stride as u32 },
         stamp: DriverStamp { nanos: 0, flags: 0x2000, arrival_nanos: 0 },
         sequence: 0,
         damaged: false,

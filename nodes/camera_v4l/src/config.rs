@@ -3,7 +3,7 @@
 use crate::exposure::ExposureConfig;
 use crate::granted::{SIZE, STRIDE};
 use crate::look::LightConfig;
-use crate::pixels::DriverFormat;
+use crate::pixels::{DriverFormat, Levels};
 use crate::stamp::StampAt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,6 +17,8 @@ pub struct Config {
     pub device: PathBuf,
     /// `GREY`, `YUYV`, `RGB3`, `BGR3` or `MJPG`.
     pub format: DriverFormat,
+    /// Which levels `YUYV` uses: `driver` (as it says), `limited` (16 to 235) or `full`.
+    pub levels: Levels,
     /// Pixels in a row.
     pub width: u32,
     /// Rows.
@@ -56,6 +58,7 @@ impl Default for Config {
         Self {
             device: PathBuf::from("/dev/video0"),
             format: DriverFormat::Yuyv,
+            levels: Levels::Driver,
             width: 640,
             height: 480,
             rate_hz: 30.0,

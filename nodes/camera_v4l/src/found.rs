@@ -11,11 +11,17 @@ const WEBCAM: &str = "uvcvideo";
 
 /// What an open camera is set to, what differs from what was asked for as it may, and what is left to chance.
 pub fn found(config: &Config, layout: &Layout, granted: &Granted, allowed: &[Difference]) -> String {
-    let Layout { format, width, height, stride } = layout;
+    let Layout { format, full_range, width, height, stride } = layout;
     let mut text = format!("{}: {format} {width}x{height}, rows of {stride} bytes", config.device.display());
     let padding = format.least_stride(*width).map_or(0, |tight| (*stride as usize).saturating_sub(tight));
     if padding > 0 {
         text += &format!(" ({padding} of them padding)");
+    }
+    if *format == DriverFormat::Yuyv {
+        text += if *full_range { ", levels 0 to 255" } else { ", levels 16 to 235" };
+        if let Some(colours) = &granted.other_colours {
+            text += &format!(" ({colours}, read as BT.601: greens and reds are some levels off)");
+        }
     }
     if let Some(rate_hz) = granted.rate_hz {
         text += &format!(", {rate_hz:.2} Hz");

@@ -13,6 +13,10 @@ pub struct Granted {
     pub driver: String,
     /// The four letters of its format.
     pub fourcc: [u8; 4],
+    /// Its Y'CbCr is over all levels, by V4L2's rules.
+    pub full_range: bool,
+    /// The colours that it has where they are not those of BT.601, in its words.
+    pub other_colours: Option<String>,
     /// Pixels in a row.
     pub width: u32,
     /// Rows.

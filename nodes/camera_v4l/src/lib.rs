@@ -33,7 +33,7 @@
 //! let frame = camera.process(
 //!     Exposed {
 //!         bytes: vec![128; 640 * 480 * 2],
-//!         layout: Layout { format: DriverFormat::Yuyv, width: 640, height: 480, stride: 1280 },
+//!         layout: Layout { format: DriverFormat::Yuyv, full_range: false, width: 640, height: 480, stride: 1280 },
 //!         // Monotonic, at the end of the exposure.
 //!         stamp: DriverStamp { nanos: 8_000_000, flags: 0x2000, arrival_nanos: 9_000_000 },
 //!         sequence: 7,
@@ -64,6 +64,8 @@ mod inspect;
 mod judge;
 mod look;
 mod mjpeg;
+#[cfg(feature = "v4l")]
+mod mode;
 #[cfg(feature = "node")]
 pub mod node;
 mod pixels;
@@ -88,7 +90,7 @@ pub use host::{clock_readings, monotonic_nanos};
 pub use inspect::inspect;
 pub use judge::LightJudge;
 pub use look::{BANDS, LightConfig, Look, look};
-pub use pixels::{DriverFormat, Layout, Picture, PixelError, unpack};
+pub use pixels::{DriverFormat, Layout, Levels, Picture, PixelError, unpack};
 pub use sequence::{SequenceCount, Step};
 pub use stamp::{DriverStamp, StampAt, StampError, middle_of_exposure};
 pub use trouble::Trouble;

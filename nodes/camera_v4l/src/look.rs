@@ -105,7 +105,6 @@ fn mean_light(frame: &Frame, light: &[f32; 256], rows: std::ops::Range<usize>) -
     for v in rows.step_by(STEP / 2) {
         for u in (0..frame.width as usize).step_by(STEP) {
             let [r, g, b] = rgb(frame, u, v);
-            // Outside of 0 to 255, as a YUYV pixel may be, it is clipped.
             sum += light[usize::from((0.299 * r + 0.587 * g + 0.114 * b) as u8)];
             count += 1;
         }
@@ -113,17 +112,7 @@ fn mean_light(frame: &Frame, light: &[f32; 256], rows: std::ops::Range<usize>) -
     sum / count.max(1) as f32
 }
 
-/// A pixel of a checked frame; BT.601 at full range (JFIF).
+/// A pixel of a checked frame.
 fn rgb(frame: &Frame, u: usize, v: usize) -> [f32; 3] {
-    let row = &frame.data[v * frame.stride as usize..];
-    match frame.format {
-        PixelFormat::Grey8 => [f32::from(row[u]); 3],
-        PixelFormat::Rgb8 => [row[3 * u], row[3 * u + 1], row[3 * u + 2]].map(f32::from),
-        PixelFormat::Yuyv => {
-            let pair = 4 * (u / 2);
-            let y = f32::from(row[pair + 2 * (u % 2)]);
-            let (cb, cr) = (f32::from(row[pair + 1]) - 128.0, f32::from(row[pair + 3]) - 128.0);
-            [y + 1.402 * cr, y - 0.344 * cb - 0.714 * cr, y + 1.772 * cb]
-        }
-    }
+    frame.format.rgb(&frame.data[v * frame.stride as usize..], u).map(f32::from)
 }

@@ -58,11 +58,37 @@ impl fmt::Display for DriverFormat {
     }
 }
 
+/// Which levels of brightness and colour `YUYV` uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Levels {
+    /// Those that the driver says: all where it says so, else the limited range.
+    #[default]
+    Driver,
+    /// 16 to 235, whatever the driver says.
+    Limited,
+    /// 0 to 255, whatever the driver says: the driver of webcams never does, and some of them send it.
+    Full,
+}
+
+impl Levels {
+    /// Whether they are all, when the driver says `full` of itself.
+    pub fn are_full(self, full: bool) -> bool {
+        match self {
+            Self::Driver => full,
+            Self::Limited => false,
+            Self::Full => true,
+        }
+    }
+}
+
 /// How a driver lays out its pictures, as it says itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     /// Of its pixels.
     pub format: DriverFormat,
+    /// `YUYV` is over all levels, and not over the limited range; without meaning for the others.
+    pub full_range: bool,
     /// Pixels in a row.
     pub width: u32,
     /// Rows.
@@ -116,7 +142,7 @@ pub enum PixelError {
 /// # Errors
 /// Bytes that are no picture of this layout.
 pub fn unpack(mut bytes: Vec<u8>, layout: &Layout) -> Result<Picture, PixelError> {
-    let Layout { format, width, height, stride } = *layout;
+    let Layout { format, full_range, width, height, stride } = *layout;
     let bad = PixelError::Layout { format, width, height, stride };
     if width == 0 || height == 0 {
         return Err(bad);
@@ -137,6 +163,7 @@ pub fn unpack(mut bytes: Vec<u8>, layout: &Layout) -> Result<Picture, PixelError
     bytes.truncate(stride_bytes * height as usize);
     let format = match format {
         DriverFormat::Grey => PixelFormat::Grey8,
+        DriverFormat::Yuyv if full_range => PixelFormat::YuyvFull,
         DriverFormat::Yuyv => PixelFormat::Yuyv,
         DriverFormat::Bgr3 => {
             for line in bytes.chunks_mut(stride_bytes) {

@@ -9,11 +9,10 @@ use crate::found::{found, offers, sentence};
 use crate::granted::{Difference, Granted, SIZE, allowance, differences, part};
 use crate::host::monotonic_nanos;
 use crate::inspect::modes;
+use crate::mode::{read_back, set_mode};
 use crate::pixels::{DriverFormat, Layout};
 use crate::stamp::DriverStamp;
 use crate::trouble::Trouble;
-use crate::writes::{GAIN, WHITE_BALANCE};
-use std::collections::BTreeMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -22,9 +21,6 @@ use v4l::buffer::{Flags, Type};
 use v4l::capability::Flags as Ability;
 use v4l::io::mmap::Stream;
 use v4l::io::traits::{CaptureStream as _, Stream as _};
-use v4l::video::Capture as _;
-use v4l::video::capture::Parameters;
-use v4l::{Format, FourCC, Fraction};
 
 /// Something can be read.
 const POLLIN: i16 = 0x001;
@@ -67,7 +63,8 @@ impl V4lOpener {
         // Some drivers leave the stride to the reader.
         let tight = format.least_stride(granted.width).unwrap_or_default() as u32;
         let stride = if granted.stride == 0 { tight } else { granted.stride };
-        let layout = Layout { format, width: granted.width, height: granted.height, stride };
+        let full_range = config.levels.are_full(granted.full_range);
+        let layout = Layout { format, full_range, width: granted.width, height: granted.height, stride };
         let stream = guarded(config, "asking for buffers", || {
             Stream::with_buffers(&device, Type::VideoCapture, config.buffers)
         })?;
@@ -120,41 +117,12 @@ pub(crate) fn calmly<T>(ask: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
     catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| Err(io::Error::other(says)))
 }
 
-fn guarded<T>(config: &Config, doing: &'static str, ask: impl FnOnce() -> io::Result<T>) -> Result<T, Trouble> {
+pub(crate) fn guarded<T>(
+    config: &Config,
+    doing: &'static str,
+    ask: impl FnOnce() -> io::Result<T>,
+) -> Result<T, Trouble> {
     calmly(ask).map_err(|error| Trouble::opening(&config.device, doing, &error))
-}
-
-/// Size and format first: setting them changes the rate.
-fn set_mode(config: &Config, device: &v4l::Device) -> Result<(), Trouble> {
-    // A format that was read back carries the stride of another width.
-    let format = Format::new(config.width, config.height, FourCC::new(&config.format.fourcc()));
-    guarded(config, "setting the format", || device.set_format(&format))?;
-    let whole = config.rate_hz.fract() == 0.0;
-    let (numerator, scale) = if whole { (1, 1.0) } else { (1000, 1000.0) };
-    let interval = Fraction::new(numerator, (config.rate_hz * scale).round() as u32);
-    // A camera with one rate refuses; what it has is read back and compared.
-    let _ = calmly(|| device.set_params(&Parameters::new(interval)));
-    Ok(())
-}
-
-fn read_back(config: &Config, device: &v4l::Device, controls: &Controls) -> Result<Granted, Trouble> {
-    let format = guarded(config, "reading the format back", || device.format())?;
-    let rate = |interval: Fraction| f64::from(interval.denominator) / f64::from(interval.numerator.max(1));
-    let rate_hz = calmly(|| device.params()).ok().map(|params| rate(params.interval)).filter(|rate| *rate > 0.0);
-    Ok(Granted {
-        driver: calmly(|| device.query_caps()).map(|caps| caps.driver).unwrap_or_default(),
-        fourcc: format.fourcc.repr,
-        width: format.width,
-        height: format.height,
-        stride: format.stride,
-        rate_hz,
-        exposure_us: controls::exposure_us(device),
-        gain: controls::read(device, GAIN),
-        white_balance_k: controls::read(device, WHITE_BALANCE),
-        controls: controls.values(device, config.controls.keys()),
-        automatics: controls::automatic_values(config, device),
-        refused: BTreeMap::new(),
-    })
 }
 
 struct V4lCamera {

@@ -22,7 +22,7 @@ fn camera(config: Config) -> CameraV4l {
 fn exposed(bytes: usize, flags: u32) -> Exposed {
     Exposed {
         bytes: vec![40; bytes],
-        layout: Layout { format: DriverFormat::Grey, width: 64, height: 48, stride: 80 },
+        layout: Layout { format: DriverFormat::Grey, full_range: false, width: 64, height: 48, stride: 80 },
         stamp: DriverStamp { nanos: 10_000_000, flags, arrival_nanos: 12_000_000 },
         sequence: 3,
         damaged: false,

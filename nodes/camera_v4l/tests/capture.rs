@@ -55,7 +55,7 @@ impl Device for Played {
     fn expose(&mut self, wait: Duration) -> Result<Option<Exposed<&[u8]>>, Trouble> {
         let exposed = |sequence, damaged| Exposed {
             bytes: &[0_u8; 4][..],
-            layout: Layout { format: DriverFormat::Grey, width: 2, height: 2, stride: 2 },
+            layout: Layout { format: DriverFormat::Grey, full_range: false, width: 2, height: 2, stride: 2 },
             stamp: DriverStamp { nanos: 0, flags: 0x2000, arrival_nanos: 0 },
             sequence,
             damaged,

@@ -49,7 +49,8 @@ fn picture(k: u64, switch: u32, format: PixelFormat, peaks_per: PeaksPer) -> Fra
     let data: Vec<u8> = match format {
         PixelFormat::Rgb8 => rgb,
         PixelFormat::Grey8 => rgb.chunks_exact(3).map(|c| luminance(c) as u8).collect(),
-        PixelFormat::Yuyv => rgb.chunks_exact(6).flat_map(yuyv).collect(),
+        PixelFormat::Yuyv => rgb.chunks_exact(6).flat_map(yuyv).enumerate().map(limited).collect(),
+        PixelFormat::YuyvFull => rgb.chunks_exact(6).flat_map(yuyv).collect(),
     };
     Frame {
         header: Header { clock: Clock::System, ..Header::default() },
@@ -69,6 +70,12 @@ fn luminance(c: &[u8]) -> f64 {
     0.299 * f64::from(c[0]) + 0.587 * f64::from(c[1]) + 0.114 * f64::from(c[2])
 }
 
+/// A byte of YUYV in the limited range.
+fn limited((at, full): (usize, u8)) -> u8 {
+    let levels = if at.is_multiple_of(2) { 219.0 } else { 224.0 };
+    (16.0 + f64::from(full) * levels / 255.0).round() as u8
+}
+
 fn yuyv(pair: &[u8]) -> [u8; 4] {
     let (left, right) = (&pair[..3], &pair[3..]);
     let chroma = |channel: usize, scale: f64| {
@@ -80,7 +87,7 @@ fn yuyv(pair: &[u8]) -> [u8; 4] {
 #[test]
 fn laser_and_lamp_in_turn_are_told_by_the_picture_in_every_format() {
     let config = LightConfig::default();
-    for format in [PixelFormat::Rgb8, PixelFormat::Yuyv, PixelFormat::Grey8] {
+    for format in [PixelFormat::Rgb8, PixelFormat::Yuyv, PixelFormat::YuyvFull, PixelFormat::Grey8] {
         for peaks_per in [PeaksPer::Row, PeaksPer::Column] {
             let mut judge = LightJudge::default();
             let mut wrong = 0;
@@ -138,7 +145,12 @@ proptest! {
     fn any_picture_can_be_looked_at(
         width in 1_u32..70,
         height in 1_u32..70,
-        format in prop_oneof![Just(PixelFormat::Grey8), Just(PixelFormat::Rgb8), Just(PixelFormat::Yuyv)],
+        format in proptest::sample::select(vec![
+            PixelFormat::Grey8,
+            PixelFormat::Rgb8,
+            PixelFormat::Yuyv,
+            PixelFormat::YuyvFull,
+        ]),
         columns in any::<bool>(),
         seed in any::<u8>(),
         bytes in 0_usize..20_000,

@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
-use camera_v4l::{DriverFormat, Layout, PixelError, unpack};
+use camera_v4l::{Config, DriverFormat, Layout, PixelError, unpack};
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder as _};
 use proptest::prelude::*;
 use wire::PixelFormat;
 
 fn layout(format: DriverFormat, width: u32, height: u32, stride: u32) -> Layout {
-    Layout { format, width, height, stride }
+    Layout { format, full_range: false, width, height, stride }
 }
 
 #[test]
@@ -26,6 +26,22 @@ fn rows_keep_their_length_and_what_is_behind_the_last_is_cut_off() {
     let picture = unpack((0..14).collect(), &layout(DriverFormat::Yuyv, 3, 2, 8));
     assert_eq!(picture, Err(PixelError::Short { bytes: 14, needed: 16 }), "an odd row has half a pair more");
     assert_eq!(unpack((0..14).collect(), &layout(DriverFormat::Yuyv, 2, 2, 10)).unwrap().data.len(), 14);
+}
+
+#[test]
+fn the_range_of_yuyv_is_the_drivers_unless_the_configuration_knows_better() {
+    for (text, said, format) in [
+        ("", false, PixelFormat::Yuyv),
+        ("", true, PixelFormat::YuyvFull),
+        ("levels = \"full\"", false, PixelFormat::YuyvFull),
+        ("levels = \"limited\"", true, PixelFormat::Yuyv),
+    ] {
+        let config: Config = toml::from_str(text).unwrap();
+        let layout = Layout { full_range: config.levels.are_full(said), ..layout(DriverFormat::Yuyv, 2, 1, 4) };
+        assert_eq!(unpack(vec![0; 4], &layout).unwrap().format, format, "{text:?}, {said}");
+        let grey = Layout { format: DriverFormat::Grey, ..layout };
+        assert_eq!(unpack(vec![0; 4], &grey).unwrap().format, PixelFormat::Grey8);
+    }
 }
 
 #[test]

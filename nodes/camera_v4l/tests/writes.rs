@@ -113,14 +113,14 @@ fn an_automatic_that_stays_on_and_a_refusal_and_rows_that_are_too_short_are_told
 
 #[test]
 fn what_was_found_names_all_that_was_set_and_what_is_left_to_chance() {
-    let layout = Layout { format: DriverFormat::Yuyv, width: 640, height: 480, stride: 1344 };
+    let layout = Layout { format: DriverFormat::Yuyv, full_range: false, width: 640, height: 480, stride: 1344 };
     let config = Config { may_differ: vec!["gain".to_owned()], ..asked() };
     let other = Granted { gain: Some(41), ..granted() };
     let (allowed, refused) = part(&config, differences(&config, &other));
     assert_eq!(refused, []);
     let text = found(&config, &layout, &other, &allowed);
     for part in [
-        "YUYV 640x480, rows of 1344 bytes (64 of them padding), 30.00 Hz, exposed for 2000 us, gain 41",
+        "YUYV 640x480, rows of 1344 bytes (64 of them padding), levels 16 to 235, 30.00 Hz, exposed for 2000 us, gain 41",
         "white balance 4600 K, focus_absolute 0, focus_automatic_continuous 0",
         "set stamp_at = \"end\"",
         "(gain: 40 was asked for, the driver has set 41)",

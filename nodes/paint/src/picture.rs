@@ -116,16 +116,8 @@ fn read_row(bytes: &[u8], format: PixelFormat, left: usize, count: usize, pixels
         PixelFormat::Rgb8 => {
             pixels.extend(bytes[3 * left..3 * (left + count)].chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
         }
-        PixelFormat::Grey8 => pixels.extend(bytes[left..left + count].iter().map(|&grey| [grey; 3])),
-        PixelFormat::Yuyv => pixels.extend((left..left + count).map(|column| {
-            let pair = 4 * (column / 2);
-            from_yuv(bytes[2 * column], bytes[pair + 1], bytes[pair + 3])
-        })),
+        PixelFormat::Grey8 | PixelFormat::Yuyv | PixelFormat::YuyvFull => {
+            pixels.extend((left..left + count).map(|u| format.rgb(bytes, u)));
+        }
     }
-}
-
-/// ITU-R BT.601, limited range, as V4L2 devices give it.
-fn from_yuv(y: u8, u: u8, v: u8) -> [u8; 3] {
-    let (y, u, v) = (1.164_384 * (f32::from(y) - 16.0), f32::from(u) - 128.0, f32::from(v) - 128.0);
-    [y + 1.596_027 * v, y - 0.391_762 * u - 0.812_968 * v, y + 2.017_232 * u].map(|c| c.round().clamp(0.0, 255.0) as u8)
 }

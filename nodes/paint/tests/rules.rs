@@ -158,12 +158,38 @@ fn grey_and_yuyv_pictures_are_read_in_place() {
     for (format, bytes, stride) in [
         (PixelFormat::Grey8, vec![120; pixels], 640),
         (PixelFormat::Yuyv, [119, 128, 119, 128].repeat(pixels / 2), 1280),
+        (PixelFormat::YuyvFull, [119, 128, 119, 128].repeat(pixels / 2), 1280),
     ] {
         let mut painter = painter(&large_plate());
         let frame = wire::Frame { format, stride, ..frame_of(&CAMERA, bytes, 0) };
         assert!(painter.frame(&frame, &pose).unwrap().coloured > 5000);
         for (_, colour) in seen(&painter) {
             assert!((colour[0] - colour[1]).abs() <= 1.0 && (colour[0] - colour[2]).abs() <= 1.0, "{colour:?}");
+        }
+    }
+}
+
+#[test]
+fn a_colour_is_the_same_in_every_layout() {
+    let pose = look_at(EYE, [0.0; 3]);
+    let pixels = 640 * 512;
+    // A dull orange, (190, 110, 60), by the formulas of BT.601 with a calculator.
+    let colours = [
+        (PixelFormat::Rgb8, [190, 110, 60].repeat(pixels), 1920),
+        (PixelFormat::Yuyv, [126, 94, 126, 167].repeat(pixels / 2), 1280),
+        (PixelFormat::YuyvFull, [128, 90, 128, 172].repeat(pixels / 2), 1280),
+    ]
+    .map(|(format, bytes, stride)| {
+        let mut painter = painter(&large_plate());
+        painter.frame(&wire::Frame { format, stride, ..frame_of(&CAMERA, bytes, 0) }, &pose).unwrap();
+        seen(&painter)
+    });
+    let [wanted, ..] = &colours;
+    assert!(wanted.len() > 500 && wanted.iter().all(|(_, colour)| colour[0] > 1.4 * colour[1]));
+    for other in &colours {
+        assert_eq!(other.len(), wanted.len());
+        for ((_, a), (_, b)) in other.iter().zip(wanted) {
+            assert!((0..3).all(|channel| (a[channel] - b[channel]).abs() <= 4.0), "{a:?} {b:?}");
         }
     }
 }

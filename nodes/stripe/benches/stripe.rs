@@ -23,7 +23,8 @@ fn frames_per_second(c: &mut Criterion) {
             .map(|seed| rgb(&Scene { width, height, speckle_contrast: 0.1, seed, ..Scene::default() }, peaks_per))
             .collect();
         let grey: Vec<Frame> = coloured.iter().map(red_of).collect();
-        for (name, frames) in [("rgb8", &coloured), ("grey8", &grey)] {
+        let yuyv: Vec<Frame> = grey.iter().map(yuyv_of).collect();
+        for (name, frames) in [("rgb8", &coloured), ("grey8", &grey), ("yuyv", &yuyv)] {
             let mut detector = StripeDetector::new(Config::default(), &red_laser(peaks_per)).unwrap();
             let mut turn = frames.iter().cycle();
             group.bench_function(format!("{name} {peaks_per:?}"), |b| {
@@ -36,6 +37,12 @@ fn frames_per_second(c: &mut Criterion) {
 fn red_of(coloured: &Frame) -> Frame {
     let red = coloured.data.iter().step_by(3).copied().collect();
     frame(coloured.width as usize, coloured.height as usize, PixelFormat::Grey8, red)
+}
+
+/// The red light as brightness, over the colour of a red that is half as strong.
+fn yuyv_of(red: &Frame) -> Frame {
+    let pairs = red.data.chunks_exact(2).flat_map(|pair| [pair[0], 110, pair[1], 184]).collect();
+    frame(red.width as usize, red.height as usize, PixelFormat::Yuyv, pairs)
 }
 
 criterion_group!(benches, frames_per_second);

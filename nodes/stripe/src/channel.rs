@@ -2,7 +2,7 @@
 
 use crate::ConfigError;
 use std::ops::Range;
-use wire::{Frame, PeaksPer, PixelFormat};
+use wire::{Frame, PeaksPer, PixelFormat, YCbCr};
 
 /// Full scale of a byte.
 const FULL: f32 = 255.0;
@@ -52,11 +52,13 @@ impl LaserChannel {
     /// left out, because the search looks at differences alone.
     fn factors(&self, format: PixelFormat) -> [f32; 3] {
         let [r, g, b] = self.weights;
-        match format {
-            PixelFormat::Rgb8 => self.weights,
-            PixelFormat::Grey8 => [1.0, 0.0, 0.0],
-            // BT.601 at full range (JFIF), as in `rgb`.
-            PixelFormat::Yuyv => [r + g + b, -0.344 * g + 1.772 * b, 1.402 * r - 0.714 * g],
+        match (format, format.ycbcr()) {
+            (PixelFormat::Grey8, _) => [1.0, 0.0, 0.0],
+            (_, None) => self.weights,
+            (_, Some(ycbcr)) => {
+                let [red, green, blue] = ycbcr.slopes();
+                std::array::from_fn(|byte| r * red[byte] + g * green[byte] + b * blue[byte])
+            }
         }
     }
 
@@ -98,13 +100,26 @@ impl LaserChannel {
                 let p = &frame.data[at..at + 3];
                 self.weigh([f32::from(p[0]), f32::from(p[1]), f32::from(p[2])])
             })),
-            PixelFormat::Yuyv => out.extend(range.map(|i| {
-                let (u, v) = if peaks_per == PeaksPer::Row { (i, line) } else { (line, i) };
-                let at = v * stride + 4 * (u / 2);
-                let p = &frame.data[at..at + 4];
-                self.weigh(rgb(p[2 * (u % 2)], p[1], p[3]))
-            })),
+            PixelFormat::Yuyv => self.read_pairs(YCbCr::LIMITED, frame, peaks_per, line, range, out),
+            PixelFormat::YuyvFull => self.read_pairs(YCbCr::FULL, frame, peaks_per, line, range, out),
         }
+    }
+
+    fn read_pairs(
+        &self,
+        ycbcr: YCbCr,
+        frame: &Frame,
+        peaks_per: PeaksPer,
+        line: usize,
+        range: Range<usize>,
+        out: &mut Vec<Sample>,
+    ) {
+        out.extend(range.map(|i| {
+            let (u, v) = if peaks_per == PeaksPer::Row { (i, line) } else { (line, i) };
+            let at = v * frame.stride as usize + 4 * (u / 2);
+            let p = &frame.data[at..at + 4];
+            self.weigh(ycbcr.rgb([p[2 * (u % 2)], p[1], p[3]]))
+        }));
     }
 
     #[inline]
@@ -118,12 +133,6 @@ impl LaserChannel {
     }
 }
 
-/// Red, green and blue of a pixel (BT.601 at full range, JFIF).
-fn rgb(y: u8, u: u8, v: u8) -> [f32; 3] {
-    let (y, u, v) = (f32::from(y), f32::from(u) - 128.0, f32::from(v) - 128.0);
-    [y + 1.402 * v, y - 0.344 * u - 0.714 * v, y + 1.772 * u].map(|c| c.clamp(0.0, FULL))
-}
-
 impl Levels {
     /// The levels of one row of a checked frame. Plain loops over fixed strides, which the compiler makes into vectors.
     pub(crate) fn fill(&self, arch: pulp::Arch, row: &[u8], out: &mut [u8]) {
@@ -133,7 +142,7 @@ impl Levels {
                 #[inline(always)]
                 || self.fill_rgb(row, out),
             ),
-            PixelFormat::Yuyv => arch.dispatch(
+            PixelFormat::Yuyv | PixelFormat::YuyvFull => arch.dispatch(
                 #[inline(always)]
                 || self.fill_yuyv(row, out),
             ),

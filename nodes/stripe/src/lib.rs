@@ -7,7 +7,7 @@
 //!
 //! How, in the order of the files:
 //! 1. `channel`: red, green and blue are summed with the rig's weights, which may be negative (red less the mean of green
-//!    and blue cancels white light). YUYV goes by way of BT.601 at full range; GREY8 is taken as it is.
+//!    and blue cancels white light). YUYV goes by way of [`wire::YCbCr`]; GREY8 is taken as it is.
 //! 2. `noise`: the standard deviation of a pixel, from the picture itself.
 //! 3. `search`: one pass over all bytes, in vectors. What rises above *both* sides stands out: steps of ambient light do not.
 //! 4. `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian fitted

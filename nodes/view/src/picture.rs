@@ -1,6 +1,6 @@
 //! A frame, shrunk for showing.
 
-use wire::{Frame, PixelFormat};
+use wire::Frame;
 
 /// Red, green, blue, row by row, with the factor by which it was shrunk.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,7 +27,8 @@ pub fn shrink(frame: &Frame, max_width: u32) -> Option<Picture> {
             let mut brightest = [0u8; 3];
             for dy in 0..by {
                 for dx in 0..by {
-                    let pixel = pixel(frame, (x * by + dx) as usize, (y * by + dy) as usize);
+                    let row = &frame.data[(y * by + dy) as usize * frame.stride as usize..];
+                    let pixel = frame.format.rgb(row, (x * by + dx) as usize);
                     brightest = std::array::from_fn(|c| brightest[c].max(pixel[c]));
                 }
             }
@@ -35,14 +36,4 @@ pub fn shrink(frame: &Frame, max_width: u32) -> Option<Picture> {
         }
     }
     Some(Picture { width, height, shrunk_by: by, rgb })
-}
-
-fn pixel(frame: &Frame, u: usize, v: usize) -> [u8; 3] {
-    let row = v * frame.stride as usize;
-    match frame.format {
-        PixelFormat::Grey8 => [frame.data[row + u]; 3],
-        PixelFormat::Rgb8 => std::array::from_fn(|c| frame.data[row + 3 * u + c]),
-        // Grey is enough to aim by.
-        PixelFormat::Yuyv => [frame.data[row + 2 * u]; 3],
-    }
 }

@@ -148,5 +148,8 @@ fn a_thin_bright_line_survives_shrinking_and_a_frame_that_lies_is_refused() {
     let small = shrink(&frame, 4).unwrap();
     assert_eq!((small.width, small.height, small.shrunk_by), (4, 2, 2));
     assert!(small.rgb.chunks(3).enumerate().all(|(k, pixel)| (pixel[0] == 250) == (k % 4 == 1)));
-    assert_eq!(shrink(&Frame { height: 9, ..frame }, 4), None);
+    assert_eq!(shrink(&Frame { height: 9, ..frame.clone() }, 4), None);
+    let red = [81, 90, 81, 240].repeat(4 * 4);
+    let yuyv = Frame { stride: 16, format: PixelFormat::Yuyv, data: Bulk(red), ..frame };
+    assert_eq!(shrink(&yuyv, 4).unwrap().rgb[..3], [254, 0, 0]);
 }

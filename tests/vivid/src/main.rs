@@ -19,6 +19,7 @@ const PROOFS: &[(&str, Proof)] = &[
     ("what is no camera, and what is not there, is named", settings::what_is_no_camera),
     ("a camera that streams is busy for others", settings::is_busy),
     ("the pixels are the test picture's, in every format", pictures::are_the_pattern),
+    ("levels of YUYV are read as the driver says, full range or limited", pictures::are_of_the_drivers_range),
     ("stamps are the middle of exposure on the system clock", pictures::are_stamped),
     ("the newest picture is held, however slow the node is", pictures::are_fresh),
     ("dropped and damaged buffers are counted", faults::dropped_and_damaged),

@@ -49,6 +49,32 @@ pub fn are_the_pattern(bench: &Bench) -> anyhow::Result<()> {
             is_the_pattern(frame, &row)?;
             ensure!(frame.data == frames[0].data, "{format}: the picture changes");
         }
+        has_the_colours(&frames[0])?;
+    }
+    Ok(())
+}
+
+/// Full range, limited range, and no word of the driver's.
+pub fn are_of_the_drivers_range(bench: &Bench) -> anyhow::Result<()> {
+    for (quantization, format) in [(1, PixelFormat::YuyvFull), (2, PixelFormat::Yuyv), (0, PixelFormat::Yuyv)] {
+        bench.turn("quantization", quantization)?;
+        let frames = frames(bench, DriverFormat::Yuyv)?;
+        ensure!(frames[0].format == format, "{:?} at quantization {quantization}", frames[0].format);
+        is_the_pattern(&frames[0], &row_of_bars(format, frames[0].width as usize))?;
+        has_the_colours(&frames[0])?;
+    }
+    Ok(())
+}
+
+/// What its bytes stand for is what the driver has drawn.
+fn has_the_colours(frame: &Frame) -> anyhow::Result<()> {
+    if frame.format == PixelFormat::Grey8 {
+        return Ok(());
+    }
+    for (k, bar) in BARS.iter().enumerate() {
+        let seen = frame.format.rgb(&frame.data, (2 * k + 1) * frame.width as usize / 16);
+        let same = seen.iter().zip(bar).all(|(seen, drawn)| seen.abs_diff(*drawn) <= 3);
+        ensure!(same, "{:?}: {seen:?} instead of {bar:?}", frame.format);
     }
     Ok(())
 }
@@ -73,8 +99,13 @@ pub fn row_of_bars(format: PixelFormat, width: usize) -> Vec<u8> {
     match format {
         PixelFormat::Rgb8 => (0..width).flat_map(bar).collect(),
         PixelFormat::Grey8 => (0..width).map(|u| grey(bar(u))).collect(),
-        PixelFormat::Yuyv => (0..width).flat_map(|u| [ycbcr(bar(u))[0], ycbcr(bar(u))[1 + u % 2]]).collect(),
+        PixelFormat::Yuyv => row_of_pairs(width, |u| ycbcr(bar(u), [16.0, 219.0, 224.0])),
+        PixelFormat::YuyvFull => row_of_pairs(width, |u| ycbcr(bar(u), [0.0, 255.0, 255.0])),
     }
+}
+
+fn row_of_pairs(width: usize, ycbcr: impl Fn(usize) -> [u8; 3]) -> Vec<u8> {
+    (0..width).flat_map(|u| [ycbcr(u)[0], ycbcr(u)[1 + u % 2]]).collect()
 }
 
 /// BT.709 in its full range: so vivid has it.
@@ -83,12 +114,12 @@ fn grey(rgb: [u8; 3]) -> u8 {
     (0.2126 * r + 0.7152 * g + 0.0722 * b).round() as u8
 }
 
-/// BT.601 in its limited range: 16 to 235 and 16 to 240.
-fn ycbcr(rgb: [u8; 3]) -> [u8; 3] {
+/// BT.601 over a range: the level of black, the levels up to white, the levels of the colours.
+fn ycbcr(rgb: [u8; 3], [black, luma, chroma]: [f64; 3]) -> [u8; 3] {
     let [r, g, b] = rgb.map(|level| f64::from(level) / 255.0);
     let y = 0.299 * r + 0.587 * g + 0.114 * b;
-    let chroma = |colour: f64, weight: f64| 128.0 + 112.0 * (colour - y) / (1.0 - weight);
-    [16.0 + 219.0 * y, chroma(b, 0.114), chroma(r, 0.299)].map(|level| level.round() as u8)
+    let difference = |colour: f64, weight: f64| 128.0 + chroma * (colour - y) / (2.0 * (1.0 - weight));
+    [black + luma * y, difference(b, 0.114), difference(r, 0.299)].map(|level| level.round() as u8)
 }
 
 pub fn are_stamped(bench: &Bench) -> anyhow::Result<()> {
