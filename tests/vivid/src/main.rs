@@ -7,6 +7,7 @@ mod bench;
 mod faults;
 mod node;
 mod pictures;
+mod rig;
 mod settings;
 
 use bench::Bench;
@@ -26,6 +27,10 @@ const PROOFS: &[(&str, Proof)] = &[
     ("a stream that breaks is started again", faults::broken_stream),
     ("an unplugged camera is opened again by its name, and set again", faults::unplugged),
     ("the node sends its pictures on a bus, and goes on behind an unplugging", node::sends_its_pictures),
+    (
+        "the node counts what is lost and damaged, and goes on behind a broken stream and signals",
+        node::goes_on_whatever_happens,
+    ),
 ];
 
 fn main() -> anyhow::Result<()> {
