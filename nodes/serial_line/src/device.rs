@@ -12,6 +12,10 @@ pub enum Trouble {
     /// What is at its other end; a sentence with what to do.
     #[error("{0}")]
     Device(String),
+    /// It has not answered, and may be starting up: [`Device::set_up`] is called once more on the same line, and waits for
+    /// it there. What is to be said till then.
+    #[error("{0}")]
+    Starting(String),
 }
 
 /// A device at the other end of a line.
@@ -66,7 +70,7 @@ pub struct Arrived<R> {
 pub enum News {
     /// It works (again); what was found.
     Streaming(String),
-    /// It does not; it is tried again.
+    /// It does not, or not yet; it is tried again.
     Trouble(Trouble),
     /// It works, but not well: the line, or a sensor.
     Noisy(String),

@@ -61,7 +61,7 @@ pub use faults::{Delivery, Faults, FaultsConfig};
 pub use half_space::HalfSpace;
 pub use host_clock::HostClock;
 #[cfg(feature = "serial")]
-pub use line::{Chunk, Line, LineSettings};
+pub use line::{Chunk, Line, LineSettings, RaiseRts};
 #[cfg(feature = "serial")]
 pub use line_error::LineError;
 pub use noise::Noise;

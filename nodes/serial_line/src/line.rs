@@ -11,8 +11,6 @@ use std::time::{Duration, Instant};
 /// Waits are cut into pieces of this length, so that a node that was told to stop does.
 const NAP: Duration = Duration::from_millis(20);
 const MOST_WRITE: Duration = Duration::from_millis(500);
-/// A line on which nothing has come for so long has run dry.
-const QUIET: Duration = Duration::from_millis(60);
 /// Who was told to be quiet, and is not by then, did not understand.
 const NEVER_QUIET: Duration = Duration::from_millis(700);
 
@@ -38,6 +36,9 @@ pub struct Chunk {
     pub arrival_nanos: i64,
 }
 
+/// Raises or lowers RTS; false when there is no such line.
+pub type RaiseRts = Box<dyn FnMut(bool) -> bool + Send>;
+
 /// A port, open and raw.
 pub struct Line {
     port: TTYPort,
@@ -45,9 +46,13 @@ pub struct Line {
     clock: HostClock,
     stopping: Arc<AtomicBool>,
     has_modem_lines: bool,
+    other_rts: Option<RaiseRts>,
 }
 
 impl Line {
+    /// A line on which nothing has come for so long has run dry.
+    pub const QUIET: Duration = Duration::from_millis(60);
+
     /// Opens a port for this program alone.
     pub fn open(settings: &LineSettings, clock: HostClock, stopping: Arc<AtomicBool>) -> Result<Self, LineError> {
         let builder = serialport::new(settings.path.to_string_lossy(), settings.baud)
@@ -56,15 +61,25 @@ impl Line {
             .exclusive(true);
         let port =
             TTYPort::open(&builder).map_err(|error| LineError::opening(&settings.path, settings.baud, &error))?;
-        let mut line = Self { port, settings: settings.clone(), clock, stopping, has_modem_lines: true };
+        let mut line =
+            Self { port, settings: settings.clone(), clock, stopping, has_modem_lines: true, other_rts: None };
         line.has_modem_lines = line.set_rts(settings.rts);
         line.port.set_timeout(NAP).map_err(|error| line.gone(&error.to_string()))?;
         Ok(line)
     }
 
+    /// From now on RTS is another wire than the port's own: for a pseudo-terminal, which has none.
+    pub fn wire_rts(&mut self, mut raise: RaiseRts) {
+        self.has_modem_lines = raise(self.settings.rts);
+        self.other_rts = Some(raise);
+    }
+
     /// Raises or lowers RTS; false when the line has none (a pseudo-terminal).
     pub fn set_rts(&mut self, high: bool) -> bool {
-        self.port.write_request_to_send(high).is_ok()
+        match &mut self.other_rts {
+            Some(raise) => raise(high),
+            None => self.port.write_request_to_send(high).is_ok(),
+        }
     }
 
     /// Whether RTS and DTR are real here.
@@ -141,7 +156,7 @@ impl Line {
         let mut scrap = [0u8; 512];
         // What the system has gathered so far is old; a port without such a buffer has none to clear.
         let _ = self.port.clear(ClearBuffer::Input);
-        while last.elapsed() < QUIET {
+        while last.elapsed() < Self::QUIET {
             if self.read(&mut scrap)?.len > 0 {
                 last = Instant::now();
             }

@@ -1,6 +1,6 @@
 //! The life of a node that sends what a tracker on a serial line says.
 
-use crate::{Device, HostClock, LineSettings, News, PoseTracker, SensorPose, Session};
+use crate::{Device, HostClock, LineSettings, News, PoseTracker, SensorPose, Session, Trouble};
 use anyhow::Context as _;
 use kit::{Go, Node, Output};
 use std::time::{Duration, Instant};
@@ -121,6 +121,7 @@ impl<T: PoseTracker> Live<T> {
 pub fn tell(news: News) {
     match news {
         News::Streaming(found) => tracing::info!("{found}"),
+        News::Trouble(Trouble::Starting(sentence)) => tracing::warn!("{sentence}"),
         News::Trouble(trouble) => tracing::error!("{trouble}"),
         News::Noisy(sentence) => tracing::warn!("{sentence}"),
     }

@@ -46,7 +46,7 @@ impl<R: Send + 'static> Session<R> {
             records: records.clone(),
             counts: counts.clone(),
             stopping: stopping.clone(),
-            named: None,
+            named: [None, None],
         };
         let thread = std::thread::spawn(move || listener.live());
         Self { records, counts, stopping, thread: Some(thread) }
@@ -83,7 +83,8 @@ struct Listener<D: Device> {
     records: Arc<Ring<Arrived<D::Record>>>,
     counts: Arc<SharedCounts>,
     stopping: Arc<AtomicBool>,
-    named: Option<(Trouble, Instant)>,
+    /// What was said last of a device that may be starting up, and of anything else.
+    named: [Option<(Trouble, Instant)>; 2],
 }
 
 impl<D: Device> Listener<D> {
@@ -108,9 +109,10 @@ impl<D: Device> Listener<D> {
     }
 
     fn name(&mut self, trouble: Trouble) {
-        let known = self.named.as_ref().is_some_and(|(said, at)| *said == trouble && at.elapsed() < NAMED_AGAIN);
+        let named = &mut self.named[usize::from(!matches!(trouble, Trouble::Starting(_)))];
+        let known = named.as_ref().is_some_and(|(said, at)| *said == trouble && at.elapsed() < NAMED_AGAIN);
         if !known {
-            self.named = Some((trouble.clone(), Instant::now()));
+            *named = Some((trouble.clone(), Instant::now()));
             (self.say)(News::Trouble(trouble));
         }
     }
@@ -121,7 +123,12 @@ impl<D: Device> Listener<D> {
             Ok(line) => line,
             Err(error) => return error.into(),
         };
-        match self.device.set_up(&mut line) {
+        let mut set_up = self.device.set_up(&mut line);
+        if let Err(trouble @ Trouble::Starting(_)) = set_up {
+            self.name(trouble);
+            set_up = self.device.set_up(&mut line);
+        }
+        match set_up {
             Ok(found) => (self.say)(News::Streaming(found)),
             Err(trouble) => return trouble,
         }
@@ -145,7 +152,7 @@ impl<D: Device> Listener<D> {
                 let skipped = self.device.tally().skipped_bytes;
                 if self.take(&buffer[..chunk.len], chunk.arrival_nanos) > 0 {
                     last_record = last_byte;
-                    self.named = None;
+                    self.named = [None, None];
                     unread.clear();
                 } else if unread.len() < SAMPLE_BYTES {
                     unread.extend(buffer[..chunk.len].iter().take(SAMPLE_BYTES));

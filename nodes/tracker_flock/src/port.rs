@@ -13,7 +13,7 @@ use crate::protocol::records::{Format, Layout, Record};
 use crate::protocol::test_mode::is_test_mode;
 use crate::tracker::Heard;
 use blind::Blind;
-use examination::{Examination, Found, Greeting};
+use examination::{EAVESDROP, Examination, Found, Greeting};
 use serial_line::{Device, Heard as HeardAt, Line, LineSettings, Tally, Trouble};
 use std::time::Duration;
 
@@ -30,16 +30,20 @@ pub struct Flock {
     layout: Layout,
     decoder: Decoder,
     sense: QuaternionSense,
-    opened_before: bool,
+    /// It was told that a bird may be starting up.
+    starting: bool,
     blind: Blind,
 }
 
 impl Flock {
+    /// Until it is said that nobody answers on a line that is quiet.
+    pub const FIRST_WORD: Duration = Line::QUIET.saturating_add(ANSWER).saturating_add(EAVESDROP);
+
     /// The flock of a configuration that was checked.
     pub fn new(config: Config) -> Self {
         let layout = Layout { metal: config.metal, ..Layout::plain(config.output) };
         let (decoder, blind) = (Decoder::new(layout), Blind::new(&config.addresses()));
-        Self { layout, decoder, sense: QuaternionSense::AsMatrix, opened_before: false, blind, config }
+        Self { layout, decoder, sense: QuaternionSense::AsMatrix, starting: false, blind, config }
     }
 
     /// How its port is opened.
@@ -48,23 +52,31 @@ impl Flock {
         LineSettings { path: self.config.port.clone(), baud: self.config.baud, rts: self.config.raise_rts, dtr: true }
     }
 
-    /// Makes it fly, and looks who is there.
+    /// Makes it fly, and looks who is there. What takes longer than a second is told first, and done when this is called
+    /// once more on the same line.
     fn wake(&mut self, line: &mut Line) -> Result<Greeting, Trouble> {
-        let opened_before = std::mem::replace(&mut self.opened_before, true);
         if !line.has_modem_lines() {
             return self.greet(line);
         }
-        for step in modem::wake(self.config.reset, opened_before) {
-            line.set_rts(step.high || (self.config.raise_rts && !self.config.reset));
+        let (reset, starting) = (self.config.reset, std::mem::take(&mut self.starting));
+        if reset && !starting {
+            return self.wait_for(|port| format!("the bird on {port} is reset by RTS, which takes three seconds"));
+        }
+        for step in modem::wake(reset, starting) {
+            line.set_rts(step.high || (self.config.raise_rts && !reset));
             line.pause(step.wait)?;
         }
-        match (self.greet(line), modem::second_chance(self.config.reset, opened_before)) {
-            (Err(Trouble::Device(_)), Some(starting_up)) => {
-                line.pause(starting_up)?;
-                self.greet(line)
+        match self.greet(line) {
+            Err(Trouble::Device(sentence)) if !starting => {
+                self.wait_for(|_| format!("{sentence}. It may be starting up: it is asked again in two seconds"))
             }
-            (greeted, _) => greeted,
+            greeted => greeted,
         }
+    }
+
+    fn wait_for(&mut self, told: impl FnOnce(std::path::Display) -> String) -> Result<Greeting, Trouble> {
+        self.starting = true;
+        Err(Trouble::Starting(told(self.config.port.display())))
     }
 
     fn greet(&self, line: &mut Line) -> Result<Greeting, Trouble> {

@@ -9,7 +9,7 @@ use serial_line::{Line, Trouble};
 use std::time::{Duration, Instant};
 
 /// So long is listened to a unit that did not answer, to say what it does instead: test mode speaks twice a second.
-const EAVESDROP: Duration = Duration::from_millis(550);
+pub(super) const EAVESDROP: Duration = Duration::from_millis(550);
 /// Group mode came with this revision.
 const GROUP_REVISION: [u8; 2] = [3, 33];
 /// Questions above number 16 came with this one.

@@ -16,21 +16,16 @@ pub struct Rts {
 const RESET_HIGH: Duration = Duration::from_secs(1);
 const START_UP: Duration = Duration::from_secs(2);
 
-/// What comes before the first word to a bird. With `reset`, the reset by RTS. Without it nothing when the port was just
-/// found; when it is opened again, the start-up is waited for, since systems raise RTS for a moment as they open a port,
-/// and with a fully wired cable that has just reset the bird.
-pub fn wake(reset: bool, opened_before: bool) -> Vec<Rts> {
+/// What comes before the first word to a bird: with `reset`, the reset by RTS; without it, nothing.
+///
+/// Opening the port may reset a bird as well, since systems raise RTS for a moment as they do so, and nobody knows how its
+/// cable is wired. So a bird that does not answer is `starting`: its start-up is waited for before it is asked once more. One
+/// that was not reset answers at once, and is not waited for.
+pub fn wake(reset: bool, starting: bool) -> Vec<Rts> {
     let fly = Rts { high: false, wait: START_UP };
-    match (reset, opened_before) {
+    match (reset, starting) {
         (true, _) => vec![Rts { high: true, wait: RESET_HIGH }, fly],
         (false, true) => vec![fly],
         (false, false) => Vec::new(),
     }
-}
-
-/// How long to wait before a bird that does not answer is asked once more, before anything is said of it: opening the port
-/// for the first time may have reset it as well, and nobody knows how the cable is wired. A bird that was not reset answers
-/// at once, and is not waited for.
-pub fn second_chance(reset: bool, opened_before: bool) -> Option<Duration> {
-    (!reset && !opened_before).then_some(START_UP)
 }
