@@ -258,27 +258,3 @@ proptest! {
         prop_assert_eq!(whole.last().map(|r| r.words), Some(expected.words));
     }
 }
-
-/// Ten million bytes of anything, with whole records between: no panic, and every record behind the garbage is found.
-#[test]
-fn ten_million_bytes_of_garbage() {
-    let mut state = 1u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as u32
-    };
-    let layout = Layout::plain(Format::PositionMatrix);
-    let mut decoder = Decoder::new(layout);
-    let (mut fed, mut found, mut sent) = (0, 0, 0);
-    while fed < 10_000_000 {
-        for _ in 0..next() % 2000 {
-            fed += 1;
-            if let Some(record) = decoder.push(next() as u8) {
-                let _ = Reading::of(&record, Scale::Inches36, QuaternionSense::AsMatrix);
-            }
-        }
-        sent += 1;
-        found += usize::from(MATRIX.iter().filter_map(|&byte| decoder.push(byte)).count() == 1);
-    }
-    assert_eq!(found, sent, "the first record behind the garbage is read");
-}
