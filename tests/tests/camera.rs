@@ -19,6 +19,8 @@ const RATE_HZ: u32 = 60;
 const PERIOD_NANOS: i64 = 1_000_000_000 / RATE_HZ as i64;
 /// As many as the node asks a driver for.
 const BUFFERS: usize = 4;
+/// So many pictures wait for a reader that others keep from the processor: more than a second's.
+const WAITING: usize = 80;
 const EXPOSED_US: f64 = 1000.0;
 /// Before it is measured, everybody has woken up.
 const WARM_UP: usize = 2 * RATE_HZ as usize;
@@ -117,7 +119,7 @@ fn measure(format: DriverFormat) -> anyhow::Result<()> {
     std::fs::write(&launch, launch_file(format)?)?;
     let mut rig = Rig::start(limn().arg("up").arg(&launch));
     let bus = rig.bus();
-    let mut frames = bus.subscribe(&topic::frame("head"), 8)?;
+    let mut frames = bus.subscribe(&topic::frame("head"), WAITING)?;
     let (mut seen, mut began, mut delays_ms) = (0, None, Vec::new());
     let processes = |rig: &Rig| -> anyhow::Result<[f64; 3]> {
         let camera = rig.node("camera_v4l").with_context(|| format!("no camera runs:\n{}", rig.said()))?;
@@ -155,6 +157,7 @@ fn measure(format: DriverFormat) -> anyhow::Result<()> {
     );
     let said = rig.said();
     ensure!(!said.contains("is refused"), "{said}");
+    ensure!(frames.counts().lost == 0, "{} pictures were lost on the bus", frames.counts().lost);
     Ok(())
 }
 
