@@ -40,19 +40,26 @@ pub fn missing(device: &Path) -> Option<String> {
     let groups = std::fs::read_to_string("/etc/group").unwrap_or_default();
     let users = std::fs::read_to_string("/etc/passwd").unwrap_or_default();
     let me = std::fs::metadata("/proc/self").map(|own| own.uid()).unwrap_or_default();
-    let user = by_number(&users, me).map(|(name, _)| name);
-    let (group, members) = by_number(&groups, metadata.gid()).unwrap_or(("unknown", ""));
-    Some(advice(&Facts {
-        group: group.to_owned(),
-        group_may: metadata.mode() & 0o060 == 0o060,
-        is_member: user.is_some_and(|user| members.split(',').any(|member| member == user)),
-    }))
+    Some(advice(&facts([metadata.mode(), metadata.gid()], me, &users, &groups)))
 }
 
-/// Name and last field of the line with this number in the third field: `name:x:number:…:last`.
-fn by_number(table: &str, number: u32) -> Option<(&str, &str)> {
-    table.lines().find_map(|line| {
-        let fields: Vec<&str> = line.split(':').collect();
-        (fields.get(2)?.parse() == Ok(number)).then_some((*fields.first()?, *fields.last()?))
-    })
+/// What is known of a device with this mode and group, and of the user with this number, by the tables of users and groups
+/// (`/etc/passwd`, `/etc/group`). A user is a member of the groups that list it, and of its own.
+pub fn facts([mode, group]: [u32; 2], user: u32, users: &str, groups: &str) -> Facts {
+    let own = by_number(users, user);
+    let listed = by_number(groups, group);
+    let members = listed.as_ref().and_then(|fields| fields.get(3)).copied().unwrap_or_default();
+    let is_own = own.as_ref().is_some_and(|fields| fields.get(3).is_some_and(|own| own.parse() == Ok(group)));
+    let is_listed = own.as_ref().is_some_and(|fields| members.split(',').any(|member| member == fields[0]));
+    Facts {
+        group: listed.map_or("unknown", |fields| fields[0]).to_owned(),
+        group_may: mode & 0o060 == 0o060,
+        is_member: is_own || is_listed,
+    }
+}
+
+/// The fields of the line with this number in the third: `name:x:number:…`.
+fn by_number(table: &str, number: u32) -> Option<Vec<&str>> {
+    let mut lines = table.lines().map(|line| line.split(':').collect::<Vec<_>>());
+    lines.find(|fields| fields.get(2).is_some_and(|field| field.parse() == Ok(number)))
 }

@@ -19,7 +19,7 @@ mod listing;
 mod page;
 mod port;
 
-pub use access::{Facts, advice, missing};
+pub use access::{Facts, advice, facts, missing};
 pub use camera::{Camera, Control, Details, Mode, Size, control_key};
 pub use listing::{Listing, list, not_built_in};
 pub use port::Port;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
-use devices::{Control, Details, Facts, Mode, Size, advice, list, not_built_in};
+use devices::{Control, Details, Facts, Mode, Size, advice, facts, list, not_built_in};
 use std::fs;
 use std::os::unix::fs::{PermissionsExt as _, symlink};
 use std::path::Path;
@@ -102,6 +102,19 @@ fn what_is_missing_is_named_with_what_to_do() {
     } else {
         println!("skipped in part: this user may open everything");
     }
+}
+
+#[test]
+fn a_user_is_a_member_of_its_own_group_and_of_those_that_list_it() {
+    let users =
+        "root:x:0:0:root:/root:/bin/sh\nann:x:1000:44:Ann:/home/ann:/bin/sh\nbob:x:1001:1001::/home/bob:/bin/sh\n";
+    let groups = "dialout:x:20:ann,bob\nvideo:x:44:\nbroken\nbob:x:1001:\n";
+    let of = |user, group| facts([0o660, group], user, users, groups);
+    assert_eq!(of(1000, 44), Facts { group: "video".to_owned(), group_may: true, is_member: true }, "her own");
+    assert_eq!(of(1001, 44), Facts { group: "video".to_owned(), group_may: true, is_member: false });
+    assert!(of(1000, 20).is_member && of(1001, 20).is_member, "listed");
+    assert_eq!(of(1000, 77), Facts { group: "unknown".to_owned(), group_may: true, is_member: false });
+    assert!(!of(4711, 20).is_member && !facts([0o640, 20], 1000, users, groups).group_may);
 }
 
 #[test]
