@@ -2,6 +2,7 @@
 
 use super::Common;
 use super::hand::Beginning;
+use super::mood::{FlockMood, PolhemusMood};
 use anyhow::{Result, ensure};
 use tracker_flock::emulator::FlockEmulator;
 use tracker_polhemus::emulator::PolhemusEmulator;
@@ -56,6 +57,12 @@ pub struct Flock {
     /// It changes its mind so often about the half of space that its sensors are in.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     pub flip_every: f64,
+    /// What is wrong with it.
+    #[arg(long, value_enum, default_value_t = FlockMood::Well)]
+    pub mood: FlockMood,
+    /// The error that it reports when it is asked first, by its number in the manual.
+    #[arg(long, value_name = "CODE", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=35))]
+    pub error: u8,
     #[command(flatten)]
     pub(super) common: Common,
 }
@@ -76,9 +83,12 @@ impl Flock {
             metal: self.metal,
             button: self.button as u8,
             flip_every_nanos: (self.flip_every * 1e9) as i64,
+            error: self.error,
             ..Default::default()
         };
-        Ok(FlockEmulator::new(config, self.common.hand.sensors(first, beginning.clone())?))
+        let mut flock = FlockEmulator::new(config, self.common.hand.sensors(first, beginning.clone())?);
+        flock.set_mood(self.mood.into());
+        Ok(flock)
     }
 }
 
@@ -103,6 +113,12 @@ pub struct Polhemus {
     /// It changes its mind so often about the half of space that its sensors are in.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     pub flip_every: f64,
+    /// What is wrong with it.
+    #[arg(long, value_enum, default_value_t = PolhemusMood::Well)]
+    pub mood: PolhemusMood,
+    /// The letter with which each record says that something is wrong, as the manual has it; a space when all is well.
+    #[arg(long, value_name = "LETTER", default_value_t = ' ', value_parser = letter)]
+    pub error: char,
     #[command(flatten)]
     pub(super) common: Common,
 }
@@ -123,9 +139,20 @@ impl Polhemus {
             rate_hz: driver.sheet().rate_hz,
             distortion: self.distortion,
             flip_every_nanos: (self.flip_every * 1e9) as i64,
+            error: u8::try_from(self.error)?,
             ..tracker_polhemus::emulator::EmulatorConfig::of(self.family)
         };
-        Ok(PolhemusEmulator::new(config, self.common.hand.sensors(1, beginning.clone())?))
+        let mut device = PolhemusEmulator::new(config, self.common.hand.sensors(1, beginning.clone())?);
+        device.set_mood(self.mood.into());
+        Ok(device)
+    }
+}
+
+fn letter(text: &str) -> Result<char, String> {
+    let mut letters = text.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) if letter.is_ascii_graphic() || letter == ' ' => Ok(letter),
+        _ => Err("one letter of ASCII".to_owned()),
     }
 }
 

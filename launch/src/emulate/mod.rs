@@ -9,6 +9,7 @@ mod devices;
 mod follow;
 mod hand;
 mod line;
+mod mood;
 
 pub use devices::Device;
 
@@ -30,6 +31,7 @@ pub const HELP: &str = "Examples:
   limn emulate flock --link /tmp/limn-flock --follow emulated   its hand begins with each scan of the rig `emulated`:
   limn up launch/emulated.toml                                  in another terminal; `b` begins a scan, `e` ends it
   limn emulate flock --units 3 --first-sensor 2                 two sensors behind an extended range controller
+  limn emulate flock --mood test-echo                           its switch 8 is on; --mood says what else may be wrong
   limn emulate polhemus --family patriot --cut-every 10 --cut-for 2 --bit-errors 500
 The driver's port is the path that is printed, or the link. Transmitter and world share origin and axes, z up: tell the
 Flock's driver hemisphere = \"lower\", the Polhemus's hemisphere = [0, 0, 1]; and scan_clock = true beside a simulated camera.";

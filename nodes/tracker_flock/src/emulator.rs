@@ -17,7 +17,7 @@ mod unit;
 
 use crate::protocol::address::Addressing;
 use crate::protocol::reading::QuaternionSense;
-use crate::protocol::records::{MOST_WORDS, encode};
+use crate::protocol::records::encode;
 use commands::next_command;
 use fault::Fault;
 pub use mood::{Mood, TestMode};
@@ -192,9 +192,7 @@ impl FlockEmulator {
             let meant = self.group || unit.address == address || (address == 0 && unit.address <= 1);
             if meant {
                 let (mut record, layout) = unit.record(&self.config, self.group, flipped);
-                if self.mood == Mood::Saturated {
-                    record.words = [0; MOST_WORDS];
-                }
+                self.bend(&mut record);
                 self.speech.say(at_nanos, encode(&record, &layout));
             }
         }

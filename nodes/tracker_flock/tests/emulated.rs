@@ -108,6 +108,17 @@ fn a_sensor_that_is_saturated_in_mid_stream_is_named_and_the_others_go_on() {
 }
 
 #[test]
+fn a_sensor_beyond_the_scale_is_lost_with_the_reason() {
+    let clock = HostClock::start();
+    let pty = plugged(EmulatorConfig::default(), FaultsConfig::default(), swing, None, clock);
+    let mut rig = listen(on(&pty), clock);
+    rig.poses(20);
+    pty.device().set_mood(Mood::OutOfRange);
+    let lost = std::iter::repeat_with(|| rig.poses(1).remove(0).pose).find(|pose| pose.quality == Quality::Lost);
+    assert!(lost.unwrap().reason.contains("end of the scale"));
+}
+
+#[test]
 fn more_than_fourteen_units_are_addressed_as_their_switches_have_it() {
     let clock = HostClock::start();
     for (addressing, units) in [(Addressing::Expanded, 17), (Addressing::SuperExpanded, 34)] {

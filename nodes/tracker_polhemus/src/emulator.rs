@@ -57,7 +57,7 @@ impl EmulatorConfig {
 /// Where the sensor of a station is at a moment, in the frame of the source.
 pub type World = Box<dyn Fn(u8, i64) -> (Vector3<f64>, UnitQuaternion<f64>) + Send>;
 
-/// What is wrong with it, for tests.
+/// What is wrong with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mood {
     /// Nothing.

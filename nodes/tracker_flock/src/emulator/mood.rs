@@ -1,6 +1,7 @@
-//! What is wrong with a flock, for tests.
+//! What is wrong with a flock.
 
 use super::FlockEmulator;
+use crate::protocol::records::{MOST_WORDS, Record};
 
 /// What is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +16,8 @@ pub enum Mood {
     WrongBaud,
     /// Its sensors are too near the transmitter: they give zeros, and the error that says so whenever it is asked for.
     Saturated,
+    /// Its sensors are beyond the scale: positions stick at its end.
+    OutOfRange,
 }
 
 /// What a bird does with its switch 8 at test, as its other switches have it (manual, pages 19-21).
@@ -42,7 +45,7 @@ impl FlockEmulator {
     /// One cycle.
     pub(super) fn live(&mut self, at_nanos: i64) {
         match self.mood {
-            Mood::Well | Mood::Saturated => self.measure(),
+            Mood::Well | Mood::Saturated | Mood::OutOfRange => self.measure(),
             Mood::Test(TestMode::Output) if self.cycle.is_multiple_of((self.rate_hz as u64 / 2).max(1)) => {
                 self.speech.say(at_nanos, b"OK\r\n".to_vec());
             }
@@ -51,10 +54,19 @@ impl FlockEmulator {
         }
     }
 
+    /// What of a record is left.
+    pub(super) fn bend(&self, record: &mut Record) {
+        match self.mood {
+            Mood::Saturated => record.words = [0; MOST_WORDS],
+            Mood::OutOfRange if record.format.has_position() => record.words[..3].fill(i16::MAX),
+            _ => {}
+        }
+    }
+
     /// Whether commands are obeyed; else what it does with the bytes instead.
     pub(super) fn understands(&mut self, bytes: &[u8], now_nanos: i64) -> bool {
         match self.mood {
-            Mood::Well | Mood::Saturated => return true,
+            Mood::Well | Mood::Saturated | Mood::OutOfRange => return true,
             Mood::Test(TestMode::Echo) => self.speech.say(now_nanos, bytes.to_vec()),
             Mood::Test(TestMode::Read) => {
                 let numbers = (0..bytes.len()).map(|k| self.counted.wrapping_add(k as u8)).collect();
