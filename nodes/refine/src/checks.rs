@@ -112,8 +112,8 @@ fn plane_patches(frames: u32) -> Vec<Patch> {
                 let frame = ((random(i + 2) + 0.5) * f64::from(frames)) as u32;
                 let place = Vector3::new(0.1 * u + 0.01 * surfel as f32, 0.1 * v, 0.0);
                 let turn = place.cross(&Vector3::z());
-                let jacobian = [0.0, 0.0, 1.0, turn.x, turn.y, turn.z, 0.0, 0.0];
-                let terms = [1.0, u, v, u * u, u * v, v * v, 0.0, 0.0];
+                let jacobian = [0.0, 0.0, 1.0, turn.x, turn.y, turn.z];
+                let terms = [1.0, u, v, u * u, u * v, v * v];
                 Member { jacobian, terms, frame, residual: random(i + 3) as f32, distance_m: 0.0, root_weight: 1.0 }
             })
             .collect();

@@ -35,13 +35,20 @@ impl Preconditioner {
     /// The residual, made into a step.
     pub fn apply(&self, unknowns: &Unknowns, residual: &[f64]) -> Vec<f64> {
         let mut out = residual.to_vec();
-        for (which, factor) in self.splines.iter().enumerate() {
+        let (splines, globals) = out.split_at_mut(unknowns.globals().start);
+        let mut rest = splines;
+        let blocks = self.splines.iter().enumerate().map(|(which, factor)| {
+            let (block, behind) = std::mem::take(&mut rest).split_at_mut(unknowns.spline(which).len());
+            rest = behind;
+            (factor, block)
+        });
+        let blocks: Vec<_> = blocks.collect();
+        blocks.into_par_iter().for_each(|(factor, block)| {
             if let Some(factor) = factor {
-                factor.solve(&mut out[unknowns.spline(which)]);
+                factor.solve(block);
             }
-        }
+        });
         if let Some(cholesky) = &self.globals {
-            let globals = &mut out[unknowns.globals()];
             let mut right = DVector::from_column_slice(globals);
             cholesky.solve_mut(&mut right);
             globals.copy_from_slice(right.as_slice());

@@ -4,6 +4,7 @@
 //! d^T J~^T (I - Psi Psi^T) J~ d with J~ = sqrt(w) J and Psi = sqrt(w) phi L^-T, where L L^T = sum w phi phi^T (+ ridge).
 //! Psi^T Psi <= I, so what is left is symmetric and positive semi-definite whatever single precision does to Psi.
 
+use crate::quadric::TERMS;
 use crate::surfel::{Member, Patch};
 use geometry::sign;
 use nalgebra::{Matrix6, Vector6};
@@ -30,23 +31,18 @@ impl FrameData {
 /// Fewer frames are not worth a thread: where others work as well, each hand-over may cost a time slice.
 pub(crate) const FRAMES_A_TASK: usize = 2048;
 
-/// v minus its part that the surfel's parameters take up.
-fn eliminate(members: &[Member], values: &mut [f32]) {
-    let mut taken = [0f32; 8];
-    for (member, value) in members.iter().zip(values.iter()) {
+/// The part of the values that the surfel's parameters take up: Psi^T v.
+fn taken(members: &[Member], values: &[f32]) -> [f32; TERMS] {
+    let mut taken = [0f32; TERMS];
+    for (member, value) in members.iter().zip(values) {
         taken.iter_mut().zip(member.terms).for_each(|(taken, term)| *taken += term * value);
     }
-    for (member, value) in members.iter().zip(values.iter_mut()) {
-        *value -= dot(&member.terms, &taken);
-    }
+    taken
 }
 
-fn dot(a: &[f32; 8], b: &[f32; 8]) -> f32 {
-    let mut sums = [0f32; 4];
-    for k in 0..4 {
-        sums[k] = a[k] * b[k] + a[k + 4] * b[k + 4];
-    }
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
+fn dot(a: &[f32; 6], b: &[f32; 6]) -> f32 {
+    let product: [f32; 6] = std::array::from_fn(|i| a[i] * b[i]);
+    (product[0] + product[4]) + (product[1] + product[5]) + (product[2] + product[3])
 }
 
 impl Patch {
@@ -70,13 +66,14 @@ impl Patch {
 
 /// Room for the product: one sum for each patch.
 pub(crate) struct Room {
-    sums: Vec<Vec<[f64; 6]>>,
-    moves: Vec<[f32; 8]>,
+    sums: Vec<Vec<[f32; 6]>>,
+    moves: Vec<[f32; 6]>,
 }
 
 impl Room {
     pub fn new(patches: &[Patch], frames: usize) -> Self {
-        Self { sums: vec![vec![[0.0; 6]; frames]; patches.len()], moves: vec![[0.0; 8]; frames] }
+        let sums = vec![vec![[0.0; 6]; frames]; patches.len()];
+        Self { sums, moves: vec![[0.0; 6]; frames] }
     }
 }
 
@@ -105,7 +102,7 @@ pub(crate) fn shaken(patches: &[Patch], weight: f64, seed: u64, room: &mut Room)
 fn forces(
     patches: &[Patch],
     weight: f64,
-    room: &mut [Vec<[f64; 6]>],
+    room: &mut [Vec<[f32; 6]>],
     value: impl Fn(u64, &Member) -> f32 + Sync,
 ) -> Vec<Vector6<f64>> {
     patches.par_iter().zip(room.par_iter_mut()).enumerate().for_each(|(number, (patch, sums))| {
@@ -116,16 +113,17 @@ fn forces(
             values.clear();
             values.extend(members.iter().zip(index..).map(|(member, index)| value(index, member)));
             index += members.len() as u64;
-            eliminate(members, &mut values);
+            let taken = taken(members, &values);
             for (member, value) in members.iter().zip(&values) {
+                let left = value - dot(&member.terms, &taken);
                 let sum = &mut sums[member.frame as usize];
-                (0..6).for_each(|i| sum[i] += f64::from(member.jacobian[i] * value));
+                (0..6).for_each(|i| sum[i] += member.jacobian[i] * left);
             }
         }
     });
     let total = |k: usize| {
         let mut total = Vector6::zeros();
-        room.iter().for_each(|sums| (0..6).for_each(|i| total[i] += sums[k][i]));
+        room.iter().for_each(|sums| (0..6).for_each(|i| total[i] += f64::from(sums[k][i])));
         total * weight
     };
     let frames = room.first().map_or(0, Vec::len);
@@ -143,9 +141,10 @@ pub(crate) fn frame_data(patches: &[Patch], weight: f64, frames: usize) -> Vec<F
             for members in patch.surfels() {
                 values.clear();
                 values.extend(members.iter().map(|m| m.residual));
-                eliminate(members, &mut values);
+                let taken = taken(members, &values);
                 for (member, value) in members.iter().zip(&values) {
                     let own = &mut data[member.frame as usize];
+                    let value = value - dot(&member.terms, &taken);
                     let left = (1.0 - dot(&member.terms, &member.terms)).max(0.0);
                     own.members += 1;
                     for i in 0..6 {

@@ -69,8 +69,8 @@ impl<'a> System<'a> {
     pub fn solve(&self, b: &[f64], most_steps: usize) -> Option<Vec<f64>> {
         let mut room = Room::new(&self.seen.patches, self.rows.len());
         let apply = |v: &[f64]| {
-            let forces = product(&self.seen.patches, self.seen.weight, &self.corrections(v), &mut room);
-            let mut out = self.believed(v);
+            let data = || product(&self.seen.patches, self.seen.weight, &self.corrections(v), &mut room);
+            let (forces, mut out) = rayon::join(data, || self.believed(v));
             self.spread(forces.iter(), &mut out);
             out
         };

@@ -139,14 +139,13 @@ fn surfel(lying: &[Lying], poses: &[FramePose], normal: &Vector3<f32>) -> Patch 
         let jacobian = poses[lying.point.frame as usize].jacobian(normal, &lying.point.in_body);
         let whitened = lower.solve_lower_triangular(&(terms(lying) * root)).unwrap_or_default();
         let mut member = Member {
-            jacobian: [0.0; 8],
-            terms: [0.0; 8],
+            jacobian: jacobian.map(|d| root * d),
+            terms: [0.0; 6],
             frame: lying.point.frame,
             residual: root * lying.height_m,
             distance_m: lying.height_m,
             root_weight: root,
         };
-        (0..6).for_each(|i| member.jacobian[i] = root * jacobian[i]);
         (0..3).for_each(|i| member.terms[i] = whitened[i]);
         patch.members.push(member);
     }

@@ -119,6 +119,36 @@ fn noise_that_lasts_is_noticed_and_undone() {
     assert!(result.fit.rms < 0.30, "{}", result.fit);
 }
 
+/// The calibration is wrong by so much that no belief in it allows for it: said, and held fast instead of run away with.
+#[test]
+fn a_hand_eye_transform_that_runs_away_is_held_and_said() {
+    let sweep = Sweep::new(&Spec { hand_eye_error: [16.0, 0.0], ..named("C") });
+    let refinement = sweep.refiner(Config::default()).finish().unwrap();
+    let evidence = &refinement.evidence;
+    let Some(Notice::HandEyeRanAway { shift_mm, .. }) = evidence.notices.first() else {
+        panic!("{:?}", evidence.notices)
+    };
+    assert!(shift_mm.iter().any(|mm| mm.abs() > 6.0), "{shift_mm:?}");
+    assert!(!evidence.hand_eye.freed && evidence.hand_eye.shift_mm == [0.0; 3], "{:?}", evidence.hand_eye);
+    let (before, after) =
+        (measure::fit(&sweep, &sweep.smoothed()), measure::fit(&sweep, &Vec::from_iter(refinement.scans())));
+    assert!(after.rms < before.rms, "{before} {after}");
+}
+
+/// Without strokes that cross there is less to hold on to, but what smoothing gave is not lost.
+#[test]
+fn strokes_in_one_direction_are_no_worse_than_smoothing_and_the_missing_one_is_named() {
+    for tracker in ["W", "M"] {
+        let result = refined(&Sweep::new(&Spec { one_way: true, ..named(tracker) }));
+        let notices = &result.refinement.evidence.notices;
+        assert!(
+            notices.iter().any(|notice| matches!(notice, Notice::StrokesDoNotCross { .. })),
+            "{tracker}: {notices:?}"
+        );
+        assert!(result.fit.rms < 1.02 * result.smoothed.rms, "{tracker}: {} {}", result.fit, result.smoothed);
+    }
+}
+
 #[test]
 fn a_thing_that_is_shoved_is_noticed_with_its_moment() {
     let pushed = Some((36.0, Vector3::new(15e-3, 10e-3, 0.0)));
