@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use system_tests::rig::{Course, Rig};
 use system_tests::{lost, report, same_bytes, short_demo, succeed};
-use wire::{Message, codec, topic};
+use wire::{Header, Message, Pose, RunPhase, codec, topic};
 
 /// What comes on one key: as a later version of limn would write it, and as ours does.
 struct Stream {
@@ -46,6 +46,14 @@ fn streams() -> Vec<Stream> {
     topic::all().into_iter().flat_map(on).collect()
 }
 
+/// A header and nothing behind it, with the highest number there is.
+fn last_header() -> Vec<u8> {
+    let header = Header { seq: u64::MAX, ..Header::default() };
+    let mut bytes = codec::encode(&RunPhase { header, discard: false });
+    bytes.pop();
+    bytes
+}
+
 /// Whether a node of a demo without a page hears it all the time, and so has something to say of it. Of models the exporter
 /// keeps the newest two, and so may never see what came before them.
 fn is_heard(key: &str) -> bool {
@@ -63,10 +71,19 @@ fn a_newer_message_is_named_garbage_is_counted_and_the_scan_goes_on() {
     Course::follow(&bus).wait_for("cluster/model", 1_000_000_000);
     let streams = streams();
     for Stream { key, newer, ours } in &streams {
+        // Both begin like a message: the first one of its publisher, and one behind which none can come.
+        bus.forward(key, ours, vec![0; 40]).unwrap();
+        bus.forward(key, ours, last_header()).unwrap();
+        // Of what is latched some hold no more than four.
         bus.forward(key, newer, vec![1, 2, 3]).unwrap();
         bus.forward(key, ours, vec![0xff; 40]).unwrap();
         bus.forward(key, "", vec![]).unwrap();
         bus.forward(key, "Nonsense@1:0", vec![0xff; 40]).unwrap();
+    }
+    // Whole messages, though their numbers are not the tracker's.
+    for seq in [0, u64::MAX] {
+        let pose = Pose::none(Header { seq, ..Header::default() }, "nobody sent it");
+        bus.forward(&topic::pose("head").key, &codec::schema::<Pose>(), codec::encode(&pose)).unwrap();
     }
     drop(bus);
     let (status, said) = rig.end();

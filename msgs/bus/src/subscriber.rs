@@ -62,6 +62,18 @@ pub struct InputCounts {
     pub reason: Option<String>,
 }
 
+impl InputCounts {
+    /// Counts a message that cannot be read. The reason is logged once; the count tells how often.
+    pub(crate) fn refuse(&mut self, key: &str, error: &codec::DecodeError) {
+        self.refused += 1;
+        let reason = error.to_string();
+        if self.reason.as_ref() != Some(&reason) {
+            tracing::error!("{key}: refused a message: {reason}");
+            self.reason = Some(reason);
+        }
+    }
+}
+
 /// The messages of one topic, oldest first.
 pub struct Subscriber<M> {
     #[allow(dead_code, reason = "held for its drop")]
@@ -132,15 +144,7 @@ impl<M: Message> Subscriber<M> {
                     return Some(message);
                 }
                 Ok(None) => {}
-                Err(error) => {
-                    self.counts.refused += 1;
-                    let reason = error.to_string();
-                    // Told once; the count tells how often.
-                    if self.counts.reason.as_ref() != Some(&reason) {
-                        tracing::error!("{}: refused a message: {reason}", sample.key_expr());
-                        self.counts.reason = Some(reason);
-                    }
-                }
+                Err(error) => self.counts.refuse(sample.key_expr().as_str(), &error),
             }
         }
         None

@@ -5,11 +5,11 @@
 
 use crate::{Config as Packing, Recorder};
 use anyhow::{Context as _, bail};
-use kit::{Node, RawInput, RawMessage};
+use kit::{Node, RawInput};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use wire::{Header, codec, topic};
+use wire::topic;
 
 /// Which pictures are kept: those that the lamp alone has lit, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -61,10 +61,14 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let mut recorder = Recorder::create(&config.file, config.packing.clone(), &notes)?;
     node.ready()?;
     let (mut begun, mut ended) = (BTreeSet::new(), BTreeSet::new());
+    let mut latest = 0;
     while node.wait() {
         for input in &mut inputs {
             while let Some(message) = input.next() {
-                let Some(header) = keep(&mut node, &mut recorder, &message)? else { continue };
+                // What cannot be read is counted by the input, and kept all the same: where it came.
+                latest = message.header.map_or(latest, |header| header.stamp_nanos);
+                recorder.write(&message.key, &message.schema, latest, &message.bytes)?;
+                let Some(header) = message.header else { continue };
                 let is_stream = ["camera/", "stripe/", "tracker/"].iter().any(|kind| message.key.starts_with(kind));
                 if !is_stream {
                     continue;
@@ -83,16 +87,6 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let kept = recorder.finish()?;
     tracing::info!("{} messages, {} MB in {}", kept.messages, kept.bytes >> 20, config.file.display());
     node.close()
-}
-
-/// Keeps a message, and returns its header; what cannot be read is counted, and kept all the same.
-fn keep(node: &mut Node, recorder: &mut Recorder, message: &RawMessage) -> anyhow::Result<Option<Header>> {
-    let Ok(header) = codec::header(&message.bytes) else {
-        node.refuse("message without a header", 1);
-        return Ok(None);
-    };
-    recorder.write(&message.key, &message.schema, header.stamp_nanos, &message.bytes)?;
-    Ok(Some(header))
 }
 
 /// Refuses a configuration without a file.
