@@ -38,7 +38,7 @@ impl Accounts {
     }
 }
 
-/// Two processes of one node as one account; latencies are the later one's.
+/// Two processes of one node as one account; the percentiles of its last second are the later one's.
 fn sum(former: &Health, last: &Health) -> Health {
     let input = |key: &str| former.inputs.iter().find(|input| input.key == key);
     let inputs = last.inputs.iter().map(|now| match input(&now.key) {
@@ -57,9 +57,12 @@ fn sum(former: &Health, last: &Health) -> Health {
             None => refused.push(refusal.clone()),
         }
     }
+    let mut latencies = former.latencies.clone();
+    latencies.add(&last.latencies);
     Health {
         inputs: inputs.collect(),
         refused,
+        latencies,
         published: former.published + last.published,
         cpu_nanos: former.cpu_nanos + last.cpu_nanos,
         busy_nanos: former.busy_nanos + last.busy_nanos,

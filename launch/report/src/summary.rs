@@ -187,7 +187,7 @@ pub struct Stage {
     pub busy_s: f64,
     /// Processor time.
     pub cpu_s: f64,
-    /// Median of the time from a measurement's stamp to its result on the bus.
+    /// Median of the time from a measurement's stamp to its result on the bus, over all results.
     pub latency_p50_ms: Option<f64>,
     /// 99th percentile of the same.
     pub latency_p99_ms: Option<f64>,

@@ -49,8 +49,7 @@ impl Harvest {
     }
 
     fn stage(&self, health: &Health) -> Stage {
-        let milliseconds = |nanos: Option<i64>| nanos.map(|nanos| nanos as f64 * 1e-6);
-        let [p50, p99] = self.latency(&health.node);
+        let latency_ms = |share| health.latencies.percentile(share).map(|nanos| nanos as f64 * 1e-6);
         let finished = self.finished.get(&health.node).copied();
         let wall_s = self.seconds(self.began, finished).filter(|seconds| *seconds > 0.0);
         Stage {
@@ -60,8 +59,8 @@ impl Harvest {
             rate_hz: wall_s.map(|seconds| health.published as f64 / seconds),
             busy_s: health.busy_nanos as f64 * 1e-9,
             cpu_s: health.cpu_nanos as f64 * 1e-9,
-            latency_p50_ms: milliseconds(p50),
-            latency_p99_ms: milliseconds(p99),
+            latency_p50_ms: latency_ms(0.5),
+            latency_p99_ms: latency_ms(0.99),
             lost: health.inputs.iter().map(|input| input.lost).sum(),
             refused: refused(health),
         }

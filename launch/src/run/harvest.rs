@@ -10,8 +10,6 @@ use wire::{CloudPoint, Mesh, Model, Refinement, Scan, TrajectorySample};
 pub struct Harvest {
     /// What every node has told of itself.
     pub accounts: Accounts,
-    /// The worst median and 99th percentile of each node's latency while the hand moved.
-    pub latencies: BTreeMap<String, [Vec<i64>; 2]>,
     /// When each node (kind/instance) had finished.
     pub finished: BTreeMap<String, Instant>,
     /// When the first measurement came.
@@ -35,16 +33,6 @@ pub struct Harvest {
 }
 
 impl Harvest {
-    /// The median over the scan of one node's latency percentiles (50th, 99th), in nanoseconds.
-    pub fn latency(&self, node: &str) -> [Option<i64>; 2] {
-        let median = |values: &Vec<i64>| {
-            let mut values = values.clone();
-            values.sort_unstable();
-            values.get(values.len() / 2).copied()
-        };
-        self.latencies.get(node).map_or([None; 2], |latencies| latencies.each_ref().map(median))
-    }
-
     /// Seconds between two moments of the run; `None` unless both came.
     pub fn seconds(&self, from: Option<Instant>, to: Option<Instant>) -> Option<f64> {
         Some(to?.saturating_duration_since(from?).as_secs_f64())

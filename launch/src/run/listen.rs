@@ -110,11 +110,6 @@ impl Ears {
             harvest.truth.extend_from_slice(&truth.samples);
         }
         while let Some(health) = self.healths.next() {
-            if health.latency_p99_nanos > 0 {
-                let [p50, p99] = harvest.latencies.entry(health.node.clone()).or_default();
-                p50.push(health.latency_p50_nanos);
-                p99.push(health.latency_p99_nanos);
-            }
             harvest.accounts.note(health);
         }
     }

@@ -1,7 +1,7 @@
 //! What nodes say of themselves. Travels under `@`, where `**` does not see it.
 
 use crate::layout::{layout, message};
-use crate::{Header, Refusal};
+use crate::{Header, Latencies, Refusal};
 
 layout! {
     /// What one input of a node has seen.
@@ -34,13 +34,15 @@ layout! {
         pub latency_p50_nanos: i64,
         /// 99th percentile of the same.
         pub latency_p99_nanos: i64,
+        /// All of them since the start.
+        pub latencies: Latencies,
         /// Processor time used since the start.
         pub cpu_nanos: i64,
         /// Of the wall time since the start, how much was spent on messages rather than waiting.
         pub busy_nanos: i64,
     }
 }
-message!(Health @ 1);
+message!(Health @ 2);
 
 layout! {
     /// How far a consumer has come; a source that is not bound to real time waits for it.

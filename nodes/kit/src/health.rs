@@ -1,18 +1,19 @@
 //! A node's account of itself.
 
-use crate::latency::Latencies;
 use crate::ports::SharedCounts;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
-use wire::{Header, Health, InputHealth, Refusal};
+use wire::{Header, Health, InputHealth, Latencies, Refusal};
 
 /// What is gathered between two reports.
 pub(crate) struct Account {
     pub(crate) inputs: Vec<(String, SharedCounts)>,
     pub(crate) sent: Arc<AtomicU64>,
-    pub(crate) latencies: Latencies,
+    /// Since the last report.
+    recent: Latencies,
+    latencies: Latencies,
     pub(crate) finished: Header,
     refused: BTreeMap<String, u64>,
     busy: Duration,
@@ -25,6 +26,7 @@ impl Account {
         Self {
             inputs: Vec::new(),
             sent: Arc::default(),
+            recent: Latencies::default(),
             latencies: Latencies::default(),
             finished: Header::default(),
             refused: BTreeMap::new(),
@@ -41,6 +43,11 @@ impl Account {
                 self.refused.insert(reason.to_owned(), count);
             }
         }
+    }
+
+    /// Notes how old a result was when it was done.
+    pub(crate) fn took(&mut self, nanos: i64) {
+        self.recent.note(nanos);
     }
 
     pub(crate) fn rests(&mut self) {
@@ -67,7 +74,9 @@ impl Account {
     }
 
     pub(crate) fn report(&mut self, node: &str) -> Health {
-        let [latency_p50_nanos, latency_p99_nanos] = self.latencies.take();
+        let recent = std::mem::take(&mut self.recent);
+        self.latencies.add(&recent);
+        let [latency_p50_nanos, latency_p99_nanos] = [0.5, 0.99].map(|share| recent.percentile(share).unwrap_or(0));
         Health {
             header: self.finished.derived(),
             node: node.to_owned(),
@@ -76,6 +85,7 @@ impl Account {
             refused: self.refused.iter().map(|(reason, &count)| Refusal { reason: reason.clone(), count }).collect(),
             latency_p50_nanos,
             latency_p99_nanos,
+            latencies: self.latencies.clone(),
             cpu_nanos: cpu_nanos().unwrap_or(0),
             busy_nanos: self.busy.as_nanos() as i64,
         }

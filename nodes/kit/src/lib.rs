@@ -23,7 +23,6 @@
 //! close stops, so no node outlives its launcher.
 
 mod health;
-mod latency;
 mod lifeline;
 mod log;
 mod node;

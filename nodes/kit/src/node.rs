@@ -213,7 +213,7 @@ impl Node {
         if let Some(epoch) = epoch
             && !header.is_end()
         {
-            self.account.latencies.note(system_nanos() - epoch - header.stamp_nanos);
+            self.account.took(system_nanos().saturating_sub(epoch).saturating_sub(header.stamp_nanos));
         }
         let mut reached = header.derived();
         if header.is_end() {

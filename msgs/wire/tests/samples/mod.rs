@@ -198,6 +198,7 @@ impl Sample for Health {
             refused: refused(),
             latency_p50_nanos: 3_000_000,
             latency_p99_nanos: 9_000_000,
+            latencies: Latencies { bins: vec![0, 3, 300, 70_000] },
             cpu_nanos: 123,
             busy_nanos: 456,
         }
