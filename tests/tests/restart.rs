@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::sync::OnceLock;
 use system_tests::rig::{Course, Rig, signal, wait_until};
-use system_tests::{lost, report, same_bytes, short_demo, succeed};
+use system_tests::{limn, lost, report, same_bytes, short_demo, succeed};
 use tempfile::TempDir;
 
 const FILES: [&str; 6] = ["cloud.ply", "mesh.ply", "mesh.stl", "model.glb", "model.obj", "model.png"];
@@ -31,7 +31,8 @@ fn kill(rig: &Rig, kind: &str) {
     wait_until("it is not started again", || rig.node(kind).is_some_and(|again| again != first));
 }
 
-fn model_without(kind: &str, node: &str) {
+/// Runs the scan, in which the first node of a kind dies when another has come so far; returns its folder.
+fn model_without(kind: &str, node: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut rig = Rig::start(&mut short_demo(folder.path()));
     let bus = rig.bus();
@@ -43,6 +44,7 @@ fn model_without(kind: &str, node: &str) {
     assert!(said.contains("signal: 9") && said.contains("again in"), "{said}");
     assert_eq!(lost(&report(folder.path())), 0, "{said}");
     FILES.iter().for_each(|file| same_bytes(undisturbed(), folder.path(), file));
+    folder
 }
 
 #[test]
@@ -73,6 +75,24 @@ fn of_surface() {
 #[test]
 fn of_paint() {
     model_without("paint", "paint/model");
+}
+
+#[test]
+fn of_export() {
+    model_without("export", "cluster/model");
+}
+
+/// What it had written stands, what its death has cost is in its second part, and both are read as one.
+#[test]
+fn of_record() {
+    let folder = model_without("record", "cluster/model");
+    let again = folder.path().join("again");
+    let scan = folder.path().join("scan.mcap");
+    assert!(scan.with_extension("2.mcap").metadata().unwrap().len() > 0);
+    let said = succeed(limn().arg("model").arg(&scan).arg("-o").arg(&again)).stderr;
+    let said = String::from_utf8_lossy(&said);
+    assert!(said.contains("scan.mcap: the recording was not closed"), "{said}");
+    FILES.iter().for_each(|file| same_bytes(undisturbed(), &again, file));
 }
 
 #[test]

@@ -81,7 +81,9 @@ pub fn run(args: &Args) -> Result<()> {
     std::fs::create_dir_all(&args.out).with_context(|| format!("making the folder {}", args.out.display()))?;
     let out = args.out.canonicalize()?;
     // A recording is never overwritten; that of an earlier demo is ours to remove.
-    let _ = std::fs::remove_file(out.join("scan.mcap"));
+    for part in formats::recording_parts(&out.join("scan.mcap")) {
+        let _ = std::fs::remove_file(part);
+    }
     let launch = files::lay_out(&out)?;
     let setup = Setup {
         scene: files::scene(&out, args.scene.as_deref().unwrap_or("cow")),

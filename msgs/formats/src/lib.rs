@@ -6,6 +6,7 @@
 //! | points | PLY, XYZ, CSV | [`cloud`] |
 //! | scans as pictures and poses | a folder of rig.toml, frames.csv, poses.csv and frames/ | [`scan_folder`] |
 //! | pictures | PNG, JPEG | [`image_file`] |
+//! | recordings | the names of their parts; crates `record` and `replay` know the rest | [`recording_part`] |
 //!
 //! Every reader takes hostile bytes: it answers with a [`FormatError`] that names file and reason, never panics, and
 //! allocates no more than a small multiple of what the file really holds, whatever its header promises.
@@ -31,10 +32,12 @@ pub mod cloud;
 mod error;
 pub mod image_file;
 pub mod mesh;
+mod parts;
 mod ply;
 pub mod scan_folder;
 mod table;
 mod whole;
 
 pub use error::{FormatError, Reason};
+pub use parts::{RECORDING_PART, recording_part, recording_parts};
 pub use whole::write_whole;

@@ -10,7 +10,9 @@
 //! earlier stamp stands as 0; the bytes keep it). Configuration, version and calibration go into the metadata record `limn`.
 //!
 //! A file grows by whole chunks, each written at once when it is large enough or holds enough time ([`Config`]); after a
-//! crash all but the last chunk can be read, without the index at the end of the file (crate `replay`).
+//! crash all but the last chunk can be read, without the index at the end of the file (crate `replay`). A recorder that was
+//! started again goes on in a second file beside the first ([`Recorder::go_on`]); what was in the last chunk it gets once more
+//! from the senders' own memory, and both files are read as one.
 //!
 //! ```
 //! use record::{Config, Recorder};

@@ -26,7 +26,7 @@ pub enum Pictures {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// The file; one that exists is not overwritten.
+    /// The file; one that exists is not overwritten. A recorder that dies goes on in a second part, `scan.2.mcap`.
     pub file: PathBuf,
     /// Which pictures are kept: `lamp` or `all`.
     pub pictures: Pictures,
@@ -58,7 +58,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let mut inputs: Vec<RawInput> = inputs.collect::<anyhow::Result<_>>()?;
     let notes = [("limn", env!("CARGO_PKG_VERSION")), ("configuration", &config.rig_config)];
     let notes: BTreeMap<String, String> = notes.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    let mut recorder = Recorder::create(&config.file, config.packing.clone(), &notes)?;
+    let mut recorder = begin(&node, &config, &notes)?;
     node.ready()?;
     let (mut begun, mut ended) = (BTreeSet::new(), BTreeSet::new());
     let mut latest = 0;
@@ -84,9 +84,24 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             }
         }
     }
+    let path = recorder.path().display().to_string();
     let kept = recorder.finish()?;
-    tracing::info!("{} messages, {} MB in {}", kept.messages, kept.bytes >> 20, config.file.display());
+    tracing::info!("{} messages, {} MB in {path}", kept.messages, kept.bytes >> 20);
     node.close()
+}
+
+/// A recorder that is started again goes on beside what it has: what came meanwhile, its senders have kept.
+fn begin(node: &Node, config: &Config, notes: &BTreeMap<String, String>) -> anyhow::Result<Recorder> {
+    if node.spec().next_seq.is_none() {
+        return Ok(Recorder::create(&config.file, config.packing.clone(), notes)?);
+    }
+    let recorder = Recorder::go_on(&config.file, config.packing.clone(), notes)?;
+    let (first, part) = (config.file.display(), recorder.path().display());
+    tracing::warn!("the recording goes on in {part}; it is read together with {first}");
+    if config.pictures == Pictures::All {
+        tracing::warn!("laser-lit pictures that came before are kept by nobody: some are missing in it");
+    }
+    Ok(recorder)
 }
 
 /// Refuses a configuration without a file.

@@ -30,6 +30,14 @@ pub enum RecordError {
         /// Why not.
         source: io::Error,
     },
+    /// What would be taken for its second part is there already.
+    #[error("{} is there already, and would be taken for a part of {}: move it away", part.display(), path.display())]
+    Part {
+        /// The file.
+        path: PathBuf,
+        /// The other one.
+        part: PathBuf,
+    },
     /// The file could not be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Write {
@@ -72,6 +80,26 @@ pub struct Recorder {
 impl Recorder {
     /// Begins a file. The metadata say what is recorded: effective configuration, version, calibration.
     pub fn create(path: &Path, config: Config, metadata: &BTreeMap<String, String>) -> Result<Self, RecordError> {
+        let part = formats::recording_part(path, 2);
+        if part.exists() {
+            return Err(RecordError::Part { path: path.to_owned(), part });
+        }
+        Self::begin(path, config, metadata.clone())
+    }
+
+    /// Goes on with a recording whose recorder has died, in its next part ([`formats::recording_part`]): what was written
+    /// before stays as it is. Whoever reads the first part reads them all.
+    pub fn go_on(path: &Path, config: Config, metadata: &BTreeMap<String, String>) -> Result<Self, RecordError> {
+        let there = formats::recording_parts(path).take_while(|part| part.exists()).count();
+        let next = u32::try_from(there).unwrap_or(u32::MAX).saturating_add(1);
+        let mut metadata = metadata.clone();
+        if next > 1 {
+            metadata.insert(formats::RECORDING_PART.to_owned(), next.to_string());
+        }
+        Self::begin(&formats::recording_part(path, next), config, metadata)
+    }
+
+    fn begin(path: &Path, config: Config, metadata: BTreeMap<String, String>) -> Result<Self, RecordError> {
         config.check()?;
         let create = |source| RecordError::Create { path: path.to_owned(), source };
         let file = File::create_new(path).map_err(create)?;
@@ -85,7 +113,7 @@ impl Recorder {
             .disable_seeking(true);
         let write = |source| RecordError::Write { path: path.to_owned(), source };
         let mut writer = options.create(file).map_err(write)?;
-        writer.write_metadata(&Metadata { name: METADATA.into(), metadata: metadata.clone() }).map_err(write)?;
+        writer.write_metadata(&Metadata { name: METADATA.into(), metadata }).map_err(write)?;
         Ok(Self {
             path: path.to_owned(),
             writer,
@@ -139,6 +167,11 @@ impl Recorder {
     pub fn flush(&mut self) -> Result<(), RecordError> {
         self.chunk_span = None;
         self.writer.flush().map_err(|source| RecordError::Write { path: self.path.clone(), source })
+    }
+
+    /// The file that is being written.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// What has been kept so far.

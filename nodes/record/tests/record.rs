@@ -55,6 +55,23 @@ fn a_recording_is_never_overwritten() {
 }
 
 #[test]
+fn a_recorder_that_lives_again_goes_on_in_the_next_part() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.mcap");
+    let go_on = || Recorder::go_on(&path, Config::default(), &BTreeMap::new()).unwrap();
+    let names = ["scan.mcap", "scan.2.mcap", "scan.3.mcap"];
+    for name in names {
+        let recorder = go_on();
+        assert_eq!(recorder.path(), folder.path().join(name));
+    }
+    // A new recording does not take the parts of another for its own.
+    std::fs::remove_file(&path).unwrap();
+    let refused = Recorder::create(&path, Config::default(), &BTreeMap::new()).err().unwrap().to_string();
+    assert!(refused.contains("scan.2.mcap is there already"), "{refused}");
+    assert!(!path.exists());
+}
+
+#[test]
 fn numbers_out_of_range_are_refused() {
     for (config, wanted) in [
         (Config { chunk_mb: 0, ..Config::default() }, "chunk_mb = 0: 1 to 256"),

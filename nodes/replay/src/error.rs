@@ -44,6 +44,8 @@ pub enum ReplayError {
 /// The part of a recording that is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Damage {
+    /// The file.
+    pub path: PathBuf,
     /// From which byte on nothing could be read.
     pub at: u64,
     /// How many bytes are there that could not be read.
@@ -54,7 +56,8 @@ pub struct Damage {
 
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the recording was not closed or is damaged at byte {}: {}; ", self.at, self.reason)?;
+        let (path, at, reason) = (self.path.display(), self.at, &self.reason);
+        write!(f, "{path}: the recording was not closed or is damaged at byte {at}: {reason}; ")?;
         write!(f, "{} bytes could not be read, all whole chunks before them could", self.bytes)
     }
 }

@@ -5,8 +5,9 @@
 //! | scan.mcap | every message, in the order in which it was recorded: key, schema, stamp, bytes as they were |
 //! | a scan folder | rig/…/calibration, then poses and frames by their stamps, then the end of each stream |
 //!
-//! A recording that was cut short or damaged is read as far as it goes: [`Recording::damage`] says what is missing, a
-//! damaged chunk in the middle is one error among the messages and the rest follows. Nothing is decoded here but headers;
+//! A recording that was cut short or damaged is read as far as it goes: [`Recording::damages`] says what is missing, a
+//! damaged chunk in the middle is one error among the messages and the rest follows. One whose recorder died and was started
+//! again goes on in scan.2.mcap, and is read as one. Nothing is decoded here but headers;
 //! [`Message::decode`] checks the schema first and names both versions when they differ.
 //!
 //! ```
@@ -28,6 +29,7 @@ mod folder;
 mod message;
 #[cfg(feature = "node")]
 pub mod node;
+mod part;
 mod recording;
 mod source;
 mod walk;

@@ -33,11 +33,7 @@ struct Outputs {
 pub fn run(mut node: Node) -> anyhow::Result<()> {
     let config: Config = node.spec().config()?;
     let source = Source::open(&config.file)?;
-    if let Source::Recording(recording) = &source
-        && let Some(damage) = recording.damage()
-    {
-        tracing::warn!("{}: {damage}", config.file.display());
-    }
+    source.damages().iter().for_each(|damage| tracing::warn!("{damage}"));
     let mut outputs = Outputs::default();
     announce(&mut node, &source, &mut outputs)?;
     node.ready()?;

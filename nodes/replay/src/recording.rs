@@ -1,17 +1,10 @@
-//! An MCAP file as a row of messages.
+//! A recording as a row of messages: an MCAP file, and those in which its recorder went on when it was started again.
 
-use crate::walk::{ChunkPlace, Walk, read_at, walk};
-use crate::{Damage, Message, ReplayError, chunk};
-use mcap::MAGIC;
-use mcap::records::Record;
-use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Read as _;
-use std::path::{Path, PathBuf};
-use std::vec;
-
-/// The metadata record of our recorder.
-const METADATA: &str = "limn";
+use crate::part::{Part, PartMessages};
+use crate::{Damage, Message, ReplayError};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use wire::codec;
 
 /// One topic of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,51 +13,55 @@ pub struct Stream {
     pub key: String,
     /// Name, version and layout of its messages.
     pub schema: String,
-    /// How many there are, as far as the file says (a damaged one may not).
+    /// How many there are, as far as the file says (a damaged one may not, and what is in two parts counts twice).
     pub messages: u64,
 }
 
 /// A recording that is open for reading.
 #[derive(Debug)]
 pub struct Recording {
-    path: PathBuf,
-    walk: Walk,
+    parts: Vec<Part>,
+    damages: Vec<Damage>,
 }
 
 impl Recording {
-    /// Looks through a file. One that was not closed is taken as far as it goes: see [`Self::damage`].
+    /// Looks through a file and its further parts ([`formats::recording_part`]). What was not closed is taken as far as it
+    /// goes: see [`Self::damages`].
     pub fn open(path: &Path) -> Result<Self, ReplayError> {
-        let io = |source| ReplayError::Io { path: path.to_owned(), source };
-        let foreign = |what: &str| ReplayError::Foreign { path: path.to_owned(), what: what.to_owned() };
-        let mut file = File::open(path).map_err(io)?;
-        let mut magic = Vec::new();
-        file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(io)?;
-        if magic != MAGIC {
-            return Err(foreign("it does not begin as an MCAP file does"));
+        let mut parts = vec![Part::open(path)?];
+        let mut unread = Vec::new();
+        for path in formats::recording_parts(path).skip(1) {
+            match Part::open(&path) {
+                Ok(part) if !part.notes().is_some_and(|notes| notes.contains_key(formats::RECORDING_PART)) => break,
+                Ok(part) => parts.push(part),
+                // The first part is worth reading all the same.
+                Err(error) => unread.push(Damage { path, at: 0, bytes: 0, reason: error.to_string() }),
+            }
         }
-        let mut walk = walk(&mut file).map_err(io)?;
-        learn_channels(&mut file, &mut walk);
-        Ok(Self { path: path.to_owned(), walk })
+        let damages = parts.iter().filter_map(|part| part.walk.damage.clone()).chain(unread).collect();
+        Ok(Self { parts, damages })
     }
 
-    /// What is missing of a file that was cut short or damaged; `None` for a whole one. Single damaged chunks show only
+    /// What is missing of files that were cut short or damaged; empty for whole ones. Single damaged chunks show only
     /// among the [`messages`](Self::messages).
-    pub fn damage(&self) -> Option<&Damage> {
-        self.walk.damage.as_ref()
+    pub fn damages(&self) -> &[Damage] {
+        &self.damages
     }
 
     /// What the recorder noted: configuration, version, calibration.
     pub fn metadata(&self) -> BTreeMap<String, String> {
-        self.walk.metadata.get(METADATA).cloned().unwrap_or_default()
+        self.parts.iter().find_map(Part::notes).cloned().unwrap_or_default()
     }
 
     /// The topics, by key and schema.
     pub fn streams(&self) -> Vec<Stream> {
         let mut streams: BTreeMap<(&str, &str), u64> = BTreeMap::new();
-        for (id, (key, schema_id)) in &self.walk.channels {
-            let schema = self.walk.schemas.get(schema_id).map_or("", String::as_str);
-            let count: u64 = self.walk.chunks.iter().filter_map(|c| c.messages.get(id)).sum();
-            *streams.entry((key, schema)).or_default() += count;
+        for walk in self.parts.iter().map(|part| &part.walk) {
+            for (id, (key, schema_id)) in &walk.channels {
+                let schema = walk.schemas.get(schema_id).map_or("", String::as_str);
+                let count: u64 = walk.chunks.iter().filter_map(|c| c.messages.get(id)).sum();
+                *streams.entry((key, schema)).or_default() += count;
+            }
         }
         let stream = |((key, schema), messages): ((&str, &str), u64)| Stream {
             key: key.to_owned(),
@@ -74,51 +71,25 @@ impl Recording {
         streams.into_iter().map(stream).collect()
     }
 
-    /// All messages in the order in which they were recorded.
+    /// All messages in the order in which they were recorded. What a recorder that was started again got once more comes
+    /// once.
     pub fn messages(&self) -> Result<Messages<'_>, ReplayError> {
-        let io = |source| ReplayError::Io { path: self.path.clone(), source };
-        let file = File::open(&self.path).map_err(io)?;
-        Ok(Messages {
-            recording: self,
-            file,
-            chunks: self.walk.chunks.iter(),
-            schemas: self.walk.schemas.clone(),
-            channels: self.walk.channels.clone(),
-            records: Vec::new().into_iter(),
-        })
+        let parts = self.parts.iter().map(Part::messages).collect::<Result<Vec<_>, _>>()?;
+        let seen = (parts.len() > 1).then(BTreeMap::new);
+        Ok(Messages { parts: parts.into_iter(), part: None, seen })
     }
 }
 
-/// A file that was not closed names its channels inside the chunks only: those whose channels are unknown are read for
-/// them. A chunk that cannot be read says so when its messages are asked for.
-fn learn_channels(file: &mut File, walk: &mut Walk) {
-    for place in walk.chunks.clone() {
-        if place.messages.is_empty() || place.messages.keys().any(|id| !walk.channels.contains_key(id)) {
-            let records = read_chunk(file, &place).unwrap_or_default();
-            let declares = |record: &Record<'_>| matches!(record, Record::Schema { .. } | Record::Channel(_));
-            records.into_iter().filter(declares).for_each(|record| walk.take(record));
-        }
-    }
-}
+/// Of each key, which messages have come: scan, number and stamp.
+type Seen = BTreeMap<String, BTreeSet<(u64, u64, i64)>>;
 
-fn read_chunk(file: &mut File, place: &ChunkPlace) -> Result<Vec<Record<'static>>, String> {
-    let there = file.metadata().map_err(|e| e.to_string())?.len();
-    if place.at.checked_add(place.length).is_none_or(|end| end > there) {
-        return Err("it lies outside the file".into());
-    }
-    let bytes = read_at(file, place.at, place.length).map_err(|e| e.to_string())?;
-    chunk::records(&bytes).map_err(|e| e.to_string())
-}
-
-/// The messages of a recording, read chunk by chunk. An error stands for what it names; what follows it can be read.
+/// The messages of a recording. An error stands for what it names; what follows it can be read.
 #[derive(Debug)]
 pub struct Messages<'a> {
-    recording: &'a Recording,
-    file: File,
-    chunks: std::slice::Iter<'a, ChunkPlace>,
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, (String, u16)>,
-    records: vec::IntoIter<Record<'static>>,
+    parts: std::vec::IntoIter<PartMessages<'a>>,
+    part: Option<PartMessages<'a>>,
+    /// For a recording of several parts.
+    seen: Option<Seen>,
 }
 
 impl Iterator for Messages<'_> {
@@ -126,35 +97,23 @@ impl Iterator for Messages<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            for record in self.records.by_ref() {
-                match record {
-                    Record::Schema { header, .. } => {
-                        self.schemas.insert(header.id, header.name);
-                    }
-                    Record::Channel(channel) => {
-                        self.channels.insert(channel.id, (channel.topic, channel.schema_id));
-                    }
-                    Record::Message { header, data } => {
-                        // A message without its channel cannot be placed; a whole chunk always names them.
-                        let Some((key, schema_id)) = self.channels.get(&header.channel_id) else { continue };
-                        return Some(Ok(Message {
-                            key: key.clone(),
-                            schema: self.schemas.get(schema_id).cloned().unwrap_or_default(),
-                            stamp_nanos: i64::try_from(header.log_time).unwrap_or(i64::MAX),
-                            bytes: data.into_owned(),
-                        }));
-                    }
-                    _ => {}
-                }
+            match self.part.as_mut().and_then(Iterator::next) {
+                Some(Ok(message)) if self.seen.as_mut().is_some_and(|seen| !is_new(seen, &message)) => {}
+                Some(message) => return Some(message),
+                None => self.part = Some(self.parts.next()?),
             }
-            let place = self.chunks.next()?;
-            match read_chunk(&mut self.file, place) {
-                Ok(records) => self.records = records.into_iter(),
-                Err(reason) => {
-                    let (path, messages) = (self.recording.path.clone(), place.messages.values().sum());
-                    return Some(Err(ReplayError::Chunk { path, at: place.at, messages, reason }));
-                }
-            }
+        }
+    }
+}
+
+fn is_new(seen: &mut Seen, message: &Message) -> bool {
+    let Ok(header) = codec::header(&message.bytes) else { return true };
+    let place = (header.scan, header.seq, header.stamp_nanos);
+    match seen.get_mut(&message.key) {
+        Some(places) => places.insert(place),
+        None => {
+            seen.insert(message.key.clone(), BTreeSet::from([place]));
+            true
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A recording or a scan folder, whichever a path is.
 
-use crate::{FolderScan, Message, Names, Recording, ReplayError};
+use crate::{Damage, FolderScan, Message, Names, Recording, ReplayError};
 use std::path::Path;
 
 /// What can be played.
@@ -19,6 +19,14 @@ impl Source {
             Ok(Self::Folder(Box::new(FolderScan::open(path, Names::default())?)))
         } else {
             Ok(Self::Recording(Recording::open(path)?))
+        }
+    }
+
+    /// What is missing of files that were cut short or damaged.
+    pub fn damages(&self) -> &[Damage] {
+        match self {
+            Self::Recording(recording) => recording.damages(),
+            Self::Folder(_) => &[],
         }
     }
 

@@ -7,6 +7,7 @@ use mcap::{MAGIC, parse_record};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
+use std::path::Path;
 
 /// Opcode and length.
 pub(crate) const PREFIX_BYTES: u64 = 9;
@@ -38,7 +39,7 @@ pub(crate) struct Walk {
 }
 
 /// Walks the whole file; where it cannot go on, the index at the end of the file is asked for what follows.
-pub(crate) fn walk(file: &mut File) -> io::Result<Walk> {
+pub(crate) fn walk(path: &Path, file: &mut File) -> io::Result<Walk> {
     let length = file.metadata()?.len();
     let mut walk = Walk::default();
     let stopped = walk.records(file, MAGIC.len() as u64, length)?;
@@ -56,7 +57,7 @@ pub(crate) fn walk(file: &mut File) -> io::Result<Walk> {
                 walk.channels.extend(index.channels);
             }
         }
-        walk.damage = Some(Damage { at, bytes, reason });
+        walk.damage = Some(Damage { path: path.to_owned(), at, bytes, reason });
     }
     Ok(walk)
 }

@@ -59,7 +59,7 @@ fn place() -> (TempDir, PathBuf) {
 fn play(path: &Path) -> Result<(Vec<Message>, usize, bool), ReplayError> {
     let recording = Recording::open(path)?;
     let (good, bad): (Vec<_>, Vec<_>) = recording.messages()?.partition(Result::is_ok);
-    Ok((good.into_iter().flatten().collect(), bad.len(), recording.damage().is_some()))
+    Ok((good.into_iter().flatten().collect(), bad.len(), !recording.damages().is_empty()))
 }
 
 static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
@@ -94,13 +94,63 @@ fn after_a_kill_all_but_the_last_chunk_is_there() {
     let (_folder, path) = place();
     record(&path, &messages(), false);
     let recording = Recording::open(&path).unwrap();
-    let damage = recording.damage().unwrap().to_string();
+    let damage = recording.damages()[0].to_string();
     assert!(damage.contains("it ends without a footer"), "{damage}");
     let read: Vec<Message> = recording.messages().unwrap().collect::<Result<_, _>>().unwrap();
     // A chunk spans 0.1 s: six messages.
     assert!(read.len() >= 60 - 6, "{}", read.len());
     assert_eq!(read, messages()[..read.len()]);
     assert_eq!(recording.streams().iter().map(|s| s.messages).sum::<u64>(), read.len() as u64);
+}
+
+/// Whole messages: what came twice is known by its header.
+fn numbered(numbers: std::ops::Range<u64>) -> Vec<Message> {
+    let message = |seq: u64| {
+        let header = Header { phase: Phase::Both, seq, stamp_nanos: seq as i64 * 20_000_000, ..Header::default() };
+        let bytes = codec::encode(&RunPhase { header, discard: false });
+        Message { key: "run/phase".into(), schema: codec::schema::<RunPhase>(), stamp_nanos: header.stamp_nanos, bytes }
+    };
+    numbers.map(message).collect()
+}
+
+/// What a recorder leaves that was killed, and was started again so often.
+fn record_in_parts(path: &Path, parts: &[Vec<Message>]) {
+    for (number, messages) in parts.iter().enumerate() {
+        let config = Config { chunk_s: 0.1, ..Config::default() };
+        let metadata = [("limn_version".to_owned(), number.to_string())].into();
+        let begin = if number == 0 { Recorder::create } else { Recorder::go_on };
+        let mut recorder = begin(path, config, &metadata).unwrap();
+        for m in messages {
+            recorder.write(&m.key, &m.schema, m.stamp_nanos, &m.bytes).unwrap();
+        }
+        std::mem::forget(recorder);
+    }
+}
+
+#[test]
+fn the_parts_of_a_recording_are_read_as_one() {
+    let (_folder, path) = place();
+    // Of each part the last chunk, six messages at most, is missing; the next one has got them from their sender.
+    record_in_parts(&path, &[numbered(0..60), numbered(0..120), numbered(100..180)]);
+    let recording = Recording::open(&path).unwrap();
+    let read: Vec<Message> = recording.messages().unwrap().collect::<Result<_, _>>().unwrap();
+    assert!(read.len() >= 180 - 6, "{}", read.len());
+    assert_eq!(read, numbered(0..read.len() as u64));
+    let damages: Vec<String> = recording.damages().iter().map(ToString::to_string).collect();
+    let named = ["scan.mcap: ", "scan.2.mcap: ", "scan.3.mcap: "];
+    assert!(damages.len() == 3 && damages.iter().zip(named).all(|(told, name)| told.contains(name)), "{damages:?}");
+    assert_eq!(recording.metadata()["limn_version"], "0");
+    // A part that holds nothing costs nothing, and another recording is no part.
+    std::fs::write(path.with_file_name("scan.2.mcap"), b"").unwrap();
+    let recording = Recording::open(&path).unwrap();
+    assert!(recording.damages().iter().any(|damage| damage.to_string().contains("does not begin")));
+    let first = recording.messages().unwrap().flatten().take(50).collect::<Vec<_>>();
+    assert_eq!(first, numbered(0..50));
+    let second = path.with_file_name("scan.2.mcap");
+    std::fs::remove_file(&second).unwrap();
+    record(&second, &[], true);
+    let alone = Recording::open(&path).unwrap().messages().unwrap().flatten().count();
+    assert!(alone <= 60, "{alone}");
 }
 
 #[test]
