@@ -60,6 +60,7 @@ pub mod scan_folder;
 pub mod section;
 pub mod set;
 pub mod setting;
+mod skipped;
 mod spec;
 pub mod stop;
 pub mod story;

@@ -6,11 +6,12 @@ use crate::nodes;
 use crate::plan::Plan;
 use crate::recorded::Recorded;
 use crate::run::before::{self, config};
+use crate::skipped::Skipped;
 use anyhow::{Context as _, Result};
 use geometry::{METRES_PER_MM, TimedPose, TrajectoryBuffer, TriangleMesh};
 use refine::{Evidence, Refinement, Refiner};
 use register::Register;
-use replay::Source;
+use replay::{Message, Source};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -73,48 +74,66 @@ fn save(path: &Path, mesh: &Mesh) -> Result<(), formats::FormatError> {
 
 /// The stages up to refinement, as far as a recording needs them.
 struct Bench {
-    stripe: StripeDetector,
+    /// Finds the stripes, where the recording does not hold them.
+    stripe: Option<StripeDetector>,
     triangulator: Triangulator,
     register: Register,
     refiner: Refiner,
 }
 
+/// What cannot be read is left out and told; the rest is refined all the same.
 fn gather(plan: &Plan, input: &Path) -> Result<Bench> {
     let source = Source::open(input)?;
+    source.damages().iter().for_each(|damage| tracing::warn!("{damage}"));
     let mut bench = None;
-    let stripes_stand = plan.node("stripe").is_none();
+    let mut skipped = Skipped::default();
     for message in source.messages()? {
-        let message = message?;
-        let [kind, _, stream] = message.key.split('/').collect::<Vec<_>>()[..] else { continue };
-        if (kind, stream) == ("rig", "calibration") && bench.is_none() {
-            bench = Some(Bench::new(plan, &message.decode::<Calibration>()?)?);
-        }
-        let Some(bench) = &mut bench else { continue };
-        match (kind, stream) {
-            ("tracker", "pose") => bench.pose(&message.decode()?),
-            ("stripe", "stripe") if stripes_stand => bench.stripe(&message.decode()?),
-            ("camera", "frame") if !stripes_stand => {
-                let frame: Frame = message.decode()?;
-                if !frame.header.is_end() {
-                    let stripe = bench.stripe.process(&frame)?;
-                    bench.stripe(&stripe);
-                }
+        let Some(message) = skipped.unless_bad(message) else { continue };
+        match &mut bench {
+            None if message.key.starts_with("rig/") => {
+                let calibration = skipped.read::<Calibration>(&message);
+                bench = calibration.map(|calibration| Bench::new(plan, &calibration)).transpose()?;
             }
-            _ => {}
+            None => {}
+            Some(bench) => bench.take(&message, &mut skipped),
         }
     }
+    skipped.tell();
     bench.with_context(|| format!("{} holds no calibration: without its rig nothing can be measured", input.display()))
 }
 
 impl Bench {
     fn new(plan: &Plan, calibration: &Calibration) -> Result<Self> {
-        let stripe = plan.node("stripe").map(|_| config(plan, "stripe")).transpose()?.unwrap_or_default();
+        let stripe = plan.node("stripe").map(|_| config(plan, "stripe")).transpose()?;
         Ok(Self {
-            stripe: StripeDetector::new(stripe, &calibration.laser)?,
+            stripe: stripe.map(|config| StripeDetector::new(config, &calibration.laser)).transpose()?,
             triangulator: Triangulator::new(config(plan, "triangulate")?, calibration)?,
             register: Register::new(config(plan, "register")?, calibration)?,
             refiner: Refiner::new(config(plan, "refine")?, calibration)?,
         })
+    }
+
+    fn take(&mut self, message: &Message, skipped: &mut Skipped) {
+        let [kind, _, stream] = message.key.split('/').collect::<Vec<_>>()[..] else { return };
+        match (kind, stream, &mut self.stripe) {
+            ("tracker", "pose", _) => {
+                if let Some(pose) = skipped.read(message) {
+                    self.pose(&pose);
+                }
+            }
+            ("stripe", "stripe", None) => {
+                if let Some(stripe) = skipped.read(message) {
+                    self.stripe(&stripe);
+                }
+            }
+            ("camera", "frame", Some(detector)) => {
+                let frame = skipped.read::<Frame>(message).filter(|frame| !frame.header.is_end());
+                if let Some(stripe) = frame.and_then(|frame| skipped.unless_bad(detector.process(&frame))) {
+                    self.stripe(&stripe);
+                }
+            }
+            _ => {}
+        }
     }
 
     fn pose(&mut self, pose: &Pose) {

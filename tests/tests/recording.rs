@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps")]
 
+use record::{Config, Recorder};
+use replay::Recording;
 use std::fs::File;
 use system_tests::{limn, lost, number, report, same_bytes, short_demo, succeed};
 
@@ -71,4 +73,37 @@ fn a_recording_that_was_cut_short_is_modelled_as_far_as_it_goes() {
     let output = limn().arg("model").arg(&scan).arg("-o").arg(&nothing).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && said.contains("scan.mcap") && !said.contains("panicked"), "{said}");
+}
+
+#[test]
+fn bad_places_in_a_recording_cost_refinement_no_more_than_themselves() {
+    let place = tempfile::tempdir().unwrap();
+    let [live, refined] = ["live", "refined"].map(|name| place.path().join(name));
+    succeed(&mut short_demo(&live));
+    let recording = Recording::open(&live.join("scan.mcap")).unwrap();
+    let bad = place.path().join("bad.mcap");
+    // The same once more, with what others sent in between.
+    let mut recorder = Recorder::create(&bad, Config::default(), &recording.metadata()).unwrap();
+    for message in recording.messages().unwrap().map(Result::unwrap) {
+        recorder.write(&message.key, &message.schema, message.stamp_nanos, &message.bytes).unwrap();
+        if message.key.starts_with("tracker/") {
+            recorder.write(&message.key, "Pose@999:1", message.stamp_nanos, b"newer").unwrap();
+            recorder.write(&message.key, &message.schema, message.stamp_nanos, &[0; 40]).unwrap();
+        }
+    }
+    recorder.finish().unwrap();
+    let mut bytes = std::fs::read(&bad).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    std::fs::write(&bad, bytes).unwrap();
+
+    let output = succeed(limn().arg("refine").arg(&bad).arg("-o").arg(&refined));
+    let said = String::from_utf8_lossy(&output.stderr);
+    for told in ["is damaged", "got Pose@999:1", "40 bytes are no Pose"] {
+        assert!(said.lines().any(|line| line.contains("left out, ") && line.contains(told)), "{told}: {said}");
+    }
+    assert!(refined.join("mesh.ply").metadata().unwrap().len() > 10_000);
+    for file in ["trajectory.csv", "evidence.json"] {
+        assert!(refined.join(file).is_file(), "{file}");
+    }
 }
