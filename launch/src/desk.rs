@@ -87,7 +87,7 @@ impl Desk {
         (self.ring)();
     }
 
-    /// Messages lost on all inputs of all nodes, as far as they have told; it counts on until the desk is closed.
+    /// Messages lost on all inputs of all nodes, as far as they have told, and here; it counts on until the desk is closed.
     pub(crate) fn lost(&self) -> Arc<AtomicU64> {
         self.lost.clone()
     }
@@ -182,7 +182,8 @@ impl Work {
         while let Some(health) = self.healths.next() {
             self.accounts.note(health);
         }
-        self.lost.store(self.accounts.lost(), Ordering::Relaxed);
+        // Whoever watches the nodes may miss something as well.
+        self.lost.store(self.accounts.lost() + self.progress.counts().lost, Ordering::Relaxed);
     }
 
     fn note_progress(&mut self) {

@@ -4,12 +4,14 @@ use super::bars::Bars;
 use super::harvest::Harvest;
 use crate::plan::Plan;
 use anyhow::Result;
-use bus::{Bus, BusConfig, Subscriber};
+use bus::{Bus, BusConfig, BusError, InputCounts, Subscriber};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use wire::{Cloud, Health, Mesh, Model, Progress, Refinement, Scan, Trajectory, topic};
+use wire::{
+    Cloud, Header, Health, InputHealth, Latencies, Mesh, Message, Model, Progress, Refinement, Scan, Trajectory, topic,
+};
 
 /// A thread that gathers until it is told to finish.
 pub struct Listener {
@@ -42,12 +44,14 @@ impl Listener {
         let mut ears = Ears {
             healths: bus.subscribe(&topic::health("**"), 1024)?,
             progress: bus.subscribe(&topic::progress("**"), 1 << 16)?,
-            scans: bus.subscribe(&topic::scan(&instance("register").unwrap_or_default()), 1 << 14)?,
-            refinements: refined.map(|topic| bus.subscribe(&topic, 8)).transpose()?,
+            // A register that is started again sends the whole scan once more.
+            scans: bus.subscribe(&topic::scan(&instance("register").unwrap_or_default()), 1 << 14)?.fresh_only(),
+            // Of what is latched the newest counts.
+            refinements: refined.map(|topic| Ok::<_, BusError>(bus.subscribe(&topic, 8)?.glimpses())).transpose()?,
             clouds: bus.subscribe(&topic::cloud(), 1 << 14)?,
-            meshes: bus.subscribe(&topic::mesh(), 4)?,
-            models: bus.subscribe(&topic::textured(), 4)?,
-            truths: bus.subscribe(&topic::truth_trajectory("*"), 64)?,
+            meshes: bus.subscribe(&topic::mesh(), 4)?.glimpses(),
+            models: bus.subscribe(&topic::textured(), 4)?.glimpses(),
+            truths: bus.subscribe(&topic::truth_trajectory("*"), 64)?.fresh_only(),
         };
         let finish = Arc::new(AtomicBool::new(false));
         let finishing = finish.clone();
@@ -60,6 +64,7 @@ impl Listener {
                     break;
                 }
             }
+            harvest.accounts.note(ears.account());
             harvest
         });
         Ok(Self { thread, finish })
@@ -72,7 +77,36 @@ impl Listener {
     }
 }
 
+/// The name of the launcher among the nodes that give account.
+const LISTENER: &str = "limn/listener";
+
 impl Ears {
+    /// What this thread has heard and missed itself: the report rests on it as on any node's work.
+    fn account(&self) -> Health {
+        let mut inputs = vec![
+            input(&self.healths),
+            input(&self.progress),
+            input(&self.scans),
+            input(&self.clouds),
+            input(&self.meshes),
+            input(&self.models),
+            input(&self.truths),
+        ];
+        inputs.extend(self.refinements.as_ref().map(input));
+        Health {
+            header: Header::default(),
+            node: LISTENER.to_owned(),
+            inputs,
+            published: 0,
+            refused: Vec::new(),
+            latency_p50_nanos: 0,
+            latency_p99_nanos: 0,
+            latencies: Latencies::default(),
+            cpu_nanos: 0,
+            busy_nanos: 0,
+        }
+    }
+
     fn hear(&mut self, harvest: &mut Harvest, bars: &Bars) {
         while let Some(scan) = self.scans.next() {
             harvest.began.get_or_insert_with(Instant::now);
@@ -113,4 +147,9 @@ impl Ears {
             harvest.accounts.note(health);
         }
     }
+}
+
+fn input<M: Message>(subscriber: &Subscriber<M>) -> InputHealth {
+    let InputCounts { received, lost, repeated, refused, .. } = *subscriber.counts();
+    InputHealth { key: subscriber.key().to_owned(), received, lost, refused: refused + repeated }
 }

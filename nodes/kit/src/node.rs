@@ -59,6 +59,7 @@ impl Node {
             _ => None,
         };
         let phases = Input::new(bus.subscribe(&topic::run_phase(), 16)?);
+        account.inputs.push((topic::run_phase().key, phases.counts()));
         account.wakes();
         Ok(Self {
             stopper: Stopper::new(bus.ringer()),
@@ -143,7 +144,7 @@ impl Node {
     /// Waits for the calibration of a handset; fails when the node is told to stop first.
     pub fn calibration(&mut self, rig: &str) -> anyhow::Result<Calibration> {
         let topic = topic::calibration(rig);
-        let mut calibrations = Input::new(self.bus.subscribe(&topic, 4)?);
+        let mut calibrations = self.input(&topic, 4)?;
         let started = Instant::now();
         let mut warned = false;
         loop {
