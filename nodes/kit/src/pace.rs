@@ -33,6 +33,6 @@ pub(crate) fn system_nanos() -> i64 {
 
 /// How long a source at real pace still has to wait for a stamp; `None` when its time has come.
 pub(crate) fn until(epoch_nanos: i64, stamp_nanos: i64) -> Option<Duration> {
-    let left = epoch_nanos + stamp_nanos - system_nanos();
+    let left = epoch_nanos.saturating_add(stamp_nanos).saturating_sub(system_nanos());
     (left > 0).then(|| Duration::from_nanos(left as u64))
 }

@@ -37,7 +37,7 @@ pub(crate) enum Turn {
 impl Window {
     pub(crate) fn new(progress: Input<Progress>, presence: Presence, consumers: &[String], window_ms: u64) -> Self {
         let reached = consumers.iter().map(|node| (node.clone(), 0)).collect();
-        let window_nanos = window_ms as i64 * 1_000_000;
+        let window_nanos = i64::try_from(window_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let (admitted, moved) = (VecDeque::new(), Instant::now());
         Self { progress, presence, arrivals: 0, reached, scan: 0, window_nanos, admitted, moved }
     }
@@ -70,7 +70,7 @@ impl Window {
         }
         let due = self.admitted.front().copied().filter(|first| *first <= newest.saturating_sub(HELD_BACK_NANOS));
         let due = due.unwrap_or(i64::MIN);
-        let may = |reached: &i64| stamp_nanos <= reached + self.window_nanos || due <= *reached;
+        let may = |reached: &i64| stamp_nanos <= reached.saturating_add(self.window_nanos) || due <= *reached;
         let turn = if self.reached.values().all(may) {
             Turn::Now
         } else if self.moved.elapsed() >= STANDSTILL {
@@ -85,7 +85,7 @@ impl Window {
     fn admit(&mut self, stamp_nanos: i64) {
         self.moved = Instant::now();
         self.admitted.push_back(stamp_nanos);
-        while self.admitted.get(1).is_some_and(|next| *next <= stamp_nanos - HELD_BACK_NANOS) {
+        while self.admitted.get(1).is_some_and(|next| *next <= stamp_nanos.saturating_sub(HELD_BACK_NANOS)) {
             self.admitted.pop_front();
         }
     }

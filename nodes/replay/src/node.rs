@@ -58,8 +58,11 @@ fn announce(node: &mut Node, source: &Source, outputs: &mut Outputs) -> anyhow::
     bail!("the recording holds no calibration: without its rig nothing can be measured")
 }
 
+/// No recording pauses for longer: a stamp that lies further ahead is a wrong one, and nobody waits for it.
+const LONGEST_PAUSE_NANOS: i64 = 3_600_000_000_000;
+
 fn play(node: &mut Node, config: &Config, source: &Source, outputs: &mut Outputs, go: &Go) -> anyhow::Result<i64> {
-    let (mut started, mut last) = (None, 0);
+    let (mut started, mut reached, mut last) = (None, 0, 0);
     for message in source.messages()? {
         let message = match message {
             Ok(message) => message,
@@ -69,11 +72,21 @@ fn play(node: &mut Node, config: &Config, source: &Source, outputs: &mut Outputs
                 continue;
             }
         };
-        // The recording's first moment is now. Poses go along with the pictures that they belong to.
-        let start = *started.get_or_insert(Go { epoch_nanos: go.epoch_nanos - message.stamp_nanos, ..*go });
-        let paces = message.key.starts_with("camera/") || message.key.starts_with("stripe/");
-        if paces && !node.wait_for_turn(&start, message.stamp_nanos) {
-            break;
+        let is_one_of = |kinds: &[&str]| kinds.iter().any(|kind| message.key.starts_with(kind));
+        let stamp_nanos = message.stamp_nanos;
+        if is_one_of(&["camera/", "stripe/", "tracker/"]) {
+            // The first measurement is now: what was told of the rig before may have another clock's stamp.
+            let start = *started.get_or_insert_with(|| {
+                reached = stamp_nanos;
+                Go { epoch_nanos: go.epoch_nanos.saturating_sub(stamp_nanos), ..*go }
+            });
+            // Poses go along with the pictures that they belong to.
+            if is_one_of(&["camera/", "stripe/"]) && stamp_nanos.saturating_sub(reached) <= LONGEST_PAUSE_NANOS {
+                if !node.wait_for_turn(&start, stamp_nanos) {
+                    break;
+                }
+                reached = reached.max(stamp_nanos);
+            }
         }
         match outputs.send(node, config, &message, go) {
             Ok(header) => last = header.map_or(last, |header: Header| header.stamp_nanos.max(last)),
@@ -126,7 +139,12 @@ impl Outputs {
     /// A recording that was cut short has no ends: whoever waits for them would wait for ever.
     fn end(&mut self, node: &mut Node, go: &Go) -> anyhow::Result<()> {
         for (key, header) in std::mem::take(&mut self.open) {
-            let header = Header { scan: go.scan, phase: Phase::End, stamp_nanos: header.stamp_nanos + 1, ..header };
+            let header = Header {
+                scan: go.scan,
+                phase: Phase::End,
+                stamp_nanos: header.stamp_nanos.saturating_add(1),
+                ..header
+            };
             let [kind, instance, stream] = key.split('/').collect::<Vec<_>>()[..] else { continue };
             match (kind, stream) {
                 ("camera", "frame") => {
