@@ -40,7 +40,43 @@ fn scan(points: usize) -> Scan {
     Scan { points: Bulk(vec![ScanPoint::default(); points]), ..Scan::none(Header::default()) }
 }
 
+/// Schemas: anything, and what looks like one.
+fn schemas() -> impl Strategy<Value = String> {
+    let near =
+        ("[A-Z][a-z]{1,9}", any::<u64>(), "[0-9a-f]{0,20}").prop_map(|(name, v, hash)| format!("{name}@{v}:{hash}"));
+    let ours = (any::<u64>(), ".{0,20}").prop_map(|(version, rest)| format!("Pose@{version}{rest}"));
+    prop_oneof![".{0,60}", near, ours, Just(codec::schema::<Pose>())]
+}
+
 proptest! {
+    #[test]
+    fn a_header_is_the_same_alone_as_in_its_message(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
+        let alone = codec::header(&bytes);
+        if let Ok(message) = codec::decode::<RunPhase>(&bytes) {
+            prop_assert_eq!(alone.ok(), Some(message.header));
+        }
+    }
+
+    #[test]
+    fn any_header_is_read_whatever_follows(
+        (scan, revision, seq, stamp_nanos) in any::<(u64, u32, u64, i64)>(),
+        behind in proptest::collection::vec(any::<u8>(), 0..30),
+    ) {
+        let header = Header { scan, revision, seq, stamp_nanos, ..Header::default() };
+        let mut bytes = codec::encode(&RunPhase { header, discard: false });
+        bytes.pop();
+        bytes.extend(behind);
+        prop_assert_eq!(codec::header(&bytes).ok(), Some(header));
+    }
+
+    #[test]
+    fn any_schema_but_our_own_is_refused_by_its_name(got in schemas()) {
+        match codec::check_schema::<Pose>(&got) {
+            Ok(()) => prop_assert_eq!(got, codec::schema::<Pose>()),
+            Err(error) => prop_assert!(error.to_string().contains(&got)),
+        }
+    }
+
     #[test]
     fn garbage(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         all(&bytes);
