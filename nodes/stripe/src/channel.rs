@@ -90,15 +90,17 @@ impl LaserChannel {
             (PeaksPer::Column, PixelFormat::Grey8) => (line, stride),
             (PeaksPer::Column, _) => (3 * line, stride),
         };
+        let pixels = || frame.data[start + range.start * step..].chunks(step).take(range.len());
+        // A copy of its own keeps the weights in registers.
+        let channel = *self;
         match frame.format {
-            PixelFormat::Grey8 => out.extend(range.map(|i| {
-                let y = f32::from(frame.data[start + i * step]);
-                Sample { grey: y, clipped: y >= self.saturation }
+            PixelFormat::Grey8 => out.extend(pixels().map(move |p| {
+                let y = f32::from(p[0]);
+                Sample { grey: y, clipped: y >= channel.saturation }
             })),
-            PixelFormat::Rgb8 => out.extend(range.map(|i| {
-                let at = start + i * step;
-                let p = &frame.data[at..at + 3];
-                self.weigh([f32::from(p[0]), f32::from(p[1]), f32::from(p[2])])
+            PixelFormat::Rgb8 => out.extend(pixels().map(move |p| {
+                let p = &p[..3];
+                channel.weigh([f32::from(p[0]), f32::from(p[1]), f32::from(p[2])])
             })),
             PixelFormat::Yuyv => self.read_pairs(YCbCr::LIMITED, frame, peaks_per, line, range, out),
             PixelFormat::YuyvFull => self.read_pairs(YCbCr::FULL, frame, peaks_per, line, range, out),

@@ -19,17 +19,20 @@ pub(crate) struct Flanks {
 
 impl Flanks {
     /// Halfway between them.
+    #[inline(always)]
     pub(crate) fn middle(&self) -> f32 {
         0.5 * (self.left + self.right)
     }
 
     /// Standard deviation of a Gaussian that is as wide.
+    #[inline(always)]
     pub(crate) fn width(&self) -> f32 {
         (self.right - self.left) / HALF_HEIGHT
     }
 }
 
 /// Outwards from the top to half its height above the background of each side.
+#[inline(always)]
 pub(crate) fn find_flanks(window: &Window, top: usize) -> Option<Flanks> {
     let samples = &window.samples;
     let peak = samples[top].grey;
@@ -60,6 +63,7 @@ pub(crate) fn find_flanks(window: &Window, top: usize) -> Option<Flanks> {
 
 /// A clipped line: the middle between its flanks, because its top is unknown. `None` when the window ends before the
 /// background.
+#[inline(always)]
 pub(crate) fn plateau(window: &Window, flanks: &Flanks, top: f32, sigma: f32) -> Option<Peak> {
     let position = flanks.middle();
     let background = window.background(position, flanks.right - position + 1.0 + CLEAR_PX)?;

@@ -22,6 +22,7 @@ const ITERATIONS: usize = 4;
 const STEP_PX: f32 = 1e-2;
 
 /// A line that is not clipped. `Ok(None)` when the window ends before the background.
+#[inline(always)]
 pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Config) -> Result<Option<Peak>, Reason> {
     let start = flanks.middle();
     let (mut x, mut line) = (start, flanks.width().max(config.min_width_px));
@@ -70,6 +71,7 @@ pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Co
 
 /// Sum, first and second moment about `x` of the line times a Gaussian weight of standard deviation `w`. The weights of
 /// neighbouring pixels differ by a factor that itself falls by a constant factor, so three exponentials make them all.
+#[inline(always)]
 fn weighted_moments(window: &Window, x: f32, w: f32, background: &Background) -> [f32; 3] {
     let last = window.samples.len() - 1;
     let from = (x - FIT_SIGMAS * w).ceil().max(0.0) as usize;

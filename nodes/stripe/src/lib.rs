@@ -10,13 +10,13 @@
 //!    and blue cancels white light). YUYV goes by way of [`wire::YCbCr`]; GREY8 is taken as it is.
 //! 2. `noise`: the standard deviation of a pixel, from the picture itself.
 //! 3. `search`: one pass over all bytes, in vectors. What rises above *both* sides stands out: steps of ambient light do not.
-//! 4. `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian fitted
-//!    (`gaussian`: Baker and Moallem 2007); of a clipped one the middle between its `flanks` is taken. What is too wide, too
-//!    narrow or too faint is refused and counted.
+//! 4. `line`, `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian
+//!    fitted (`gaussian`: Baker and Moallem 2007); of a clipped one the middle between its `flanks` is taken. What is too
+//!    wide, too narrow or too faint is refused and counted.
 //! 5. `support`: where the line is not seen, grains of noise and texture still stand out. No line goes on from them to the
 //!    rows (or columns) around: they are refused and counted.
-//! 6. The best is the peak with the largest amplitude; of a tie (all clipped ones tie), the first from the left (from the
-//!    top).
+//! 6. `choice`: the largest of each line are kept, and the best is the one with the largest amplitude; of a tie (all clipped
+//!    ones tie), the first from the left (from the top).
 //! 7. `lateral`: positions that follow one another in neighbouring lines are averaged by a short straight fit, unless they
 //!    depart from it by more than noise: corners and steps of the surface stay.
 //! 8. `scatter`: what scatter along the stripe the pixels' noise does not explain is speckle, and goes into the sigma.
@@ -55,11 +55,13 @@
 //! ```
 
 mod channel;
+mod choice;
 mod config;
 mod detect;
 mod flanks;
 mod gaussian;
 mod lateral;
+mod line;
 mod measure;
 mod noise;
 mod refusal;

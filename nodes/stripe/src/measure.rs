@@ -27,6 +27,7 @@ pub(crate) struct Peak {
 }
 
 /// Measures what stands out in `run`, whose pixels the window holds; `sigma` is the noise of a pixel in grey levels.
+#[inline(always)]
 pub(crate) fn measure(window: &Window, run: Run, sigma: f32, config: &Config) -> Result<Peak, Reason> {
     let samples = &window.samples;
     let (from, to) = (run.first as usize - window.first, run.last as usize - window.first);

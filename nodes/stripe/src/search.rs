@@ -4,8 +4,8 @@
 use crate::channel::Levels;
 use wire::{Frame, PeaksPer};
 
-/// Pixels that share one look at their largest contrast.
-const BLOCK: usize = 32;
+/// Pixels that are passed over together where none is lit.
+const BLOCK: usize = 64;
 /// Rows that are converted in one go (row by row, between comparisons, the memory cannot be read ahead).
 const BATCH: usize = 16;
 /// Lit stretches of one line that are closer belong together.
@@ -28,11 +28,12 @@ pub(crate) struct Search {
     reach: [usize; 2],
     /// Levels: one row with its borders (peaks per row) or a ring of rows (peaks per column).
     levels: Vec<u8>,
-    contrast: Vec<u8>,
+    /// Of one row: not zero where it is lit.
+    excess: Vec<u8>,
     /// Which run of a column was the last (peaks per column).
     last_run: Vec<u32>,
-    /// What was found, by line and along each line.
-    pub runs: Vec<Run>,
+    /// Of one row, or of all columns.
+    runs: Vec<Run>,
 }
 
 impl Search {
@@ -45,24 +46,32 @@ impl Search {
             arch: pulp::Arch::new(),
             reach: [near, far],
             levels: Vec::new(),
-            contrast: Vec::new(),
+            excess: Vec::new(),
             last_run: Vec::new(),
             runs: Vec::new(),
         }
     }
 
-    /// Fills `runs` with all that rises more than `threshold` levels above both sides.
-    pub(crate) fn run(&mut self, frame: &Frame, levels: &Levels, peaks_per: PeaksPer, threshold: u8) {
+    /// Hands over, line by line, all that rises more than `threshold` levels above both sides.
+    pub(crate) fn run(
+        &mut self,
+        frame: &Frame,
+        levels: &Levels,
+        peaks_per: PeaksPer,
+        threshold: u8,
+        found: impl FnMut(&[Run]),
+    ) {
         self.runs.clear();
-        self.contrast.clear();
-        self.contrast.resize((frame.width as usize).next_multiple_of(BLOCK), 0);
+        self.excess.clear();
+        self.excess.resize((frame.width as usize).next_multiple_of(BLOCK), 0);
         match peaks_per {
-            PeaksPer::Row => self.rows(frame, levels, threshold),
-            PeaksPer::Column => self.columns(frame, levels, threshold),
+            PeaksPer::Row => self.rows(frame, levels, threshold, found),
+            PeaksPer::Column => self.columns(frame, levels, threshold, found),
         }
     }
 
-    fn rows(&mut self, frame: &Frame, levels: &Levels, threshold: u8) {
+    /// What a row holds is handed over at once, while its bytes are still in the first cache.
+    fn rows(&mut self, frame: &Frame, levels: &Levels, threshold: u8, mut found: impl FnMut(&[Run])) {
         let [near, far] = self.reach;
         let (width, stride) = (frame.width as usize, frame.stride as usize);
         self.levels.clear();
@@ -74,16 +83,18 @@ impl Search {
             self.levels[far + width..].fill(last);
             let shifted = |by: usize| &self.levels[by..by + width];
             let sides = [shifted(far - near), shifted(0), shifted(far + near), shifted(2 * far)];
-            contrast(self.arch, shifted(far), sides, &mut self.contrast[..width]);
-            lit_pixels(self.arch, &self.contrast, threshold, |u| match self.runs.last_mut() {
-                Some(run) if run.line == v as u32 && u <= run.last + JOIN_PX => run.last = u,
+            self.arch.dispatch(Excess { centre: shifted(far), sides, threshold, out: &mut self.excess[..width] });
+            self.runs.clear();
+            for_each_lit(&self.excess, |u| match self.runs.last_mut() {
+                Some(run) if u <= run.last + JOIN_PX => run.last = u,
                 _ => self.runs.push(Run { line: v as u32, first: u, last: u }),
             });
+            found(&self.runs);
         }
     }
 
     /// Down the picture row by row, as it lies in memory: a ring holds the rows that a pixel is compared with.
-    fn columns(&mut self, frame: &Frame, levels: &Levels, threshold: u8) {
+    fn columns(&mut self, frame: &Frame, levels: &Levels, threshold: u8, found: impl FnMut(&[Run])) {
         const NONE: u32 = u32::MAX;
         let [near, far] = self.reach;
         let (width, height, stride) = (frame.width as usize, frame.height as usize, frame.stride as usize);
@@ -107,9 +118,9 @@ impl Search {
                 &self.levels[at..at + width]
             };
             let sides = [row(v.saturating_sub(near)), row(v.saturating_sub(far)), row(v + near), row(v + far)];
-            contrast(self.arch, row(v), sides, &mut self.contrast[..width]);
+            self.arch.dispatch(Excess { centre: row(v), sides, threshold, out: &mut self.excess[..width] });
             let v = v as u32;
-            lit_pixels(self.arch, &self.contrast, threshold, |u| {
+            for_each_lit(&self.excess, |u| {
                 let last = &mut self.last_run[u as usize];
                 match self.runs.get_mut(*last as usize) {
                     Some(run) if v <= run.last + JOIN_PX => run.last = v,
@@ -121,37 +132,50 @@ impl Search {
             });
         }
         self.runs.sort_unstable();
+        self.runs.chunk_by(|a, b| a.line == b.line).for_each(found);
     }
 }
 
-/// How far each pixel stands above the larger of its two sides, where a side is the darker of a near and a far pixel: a
-/// step has one bright side and gives nothing, and a second line at one of the distances hides none.
-fn contrast(arch: pulp::Arch, centre: &[u8], sides: [&[u8]; 4], out: &mut [u8]) {
-    arch.dispatch(
-        #[inline(always)]
-        || {
-            let [left_near, left_far, right_near, right_far] = sides.map(|side| &side[..out.len()]);
-            let centre = &centre[..out.len()];
-            for i in 0..out.len() {
-                let side = left_near[i].min(left_far[i]).max(right_near[i].min(right_far[i]));
-                out[i] = centre[i].saturating_sub(side);
-            }
-        },
-    );
+/// By how much more than `threshold` each pixel stands above the larger of its two sides, where a side is the darker of a
+/// near and a far pixel: a step has one bright side and gives nothing, and a second line at one of the distances hides
+/// none. (A struct to be compiled for each kind of vectors; a closure would be compiled once, for the least of them.)
+struct Excess<'a> {
+    centre: &'a [u8],
+    /// Left (or above), near and far, and right (or below) likewise.
+    sides: [&'a [u8]; 4],
+    threshold: u8,
+    out: &'a mut [u8],
 }
 
-fn lit_pixels(arch: pulp::Arch, contrast: &[u8], threshold: u8, mut lit: impl FnMut(u32)) {
-    let (blocks, _) = contrast.as_chunks::<BLOCK>();
+impl pulp::NullaryFnOnce for Excess<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { centre, sides, threshold, out } = self;
+        let [left_near, left_far, right_near, right_far] = sides.map(|side| &side[..out.len()]);
+        let centre = &centre[..out.len()];
+        for i in 0..out.len() {
+            let side = left_near[i].min(left_far[i]).max(right_near[i].min(right_far[i]));
+            out[i] = centre[i].saturating_sub(side).saturating_sub(threshold);
+        }
+    }
+}
+
+/// The places of all bytes that are not zero; there are few.
+fn for_each_lit(excess: &[u8], mut lit: impl FnMut(u32)) {
+    let (blocks, _) = excess.as_chunks::<BLOCK>();
     for (block, pixels) in blocks.iter().enumerate() {
-        let largest = arch.dispatch(
-            #[inline(always)]
-            || pixels.iter().fold(0, |max: u8, &c| max.max(c)),
-        );
-        if largest > threshold {
-            for (i, &c) in pixels.iter().enumerate() {
-                if c > threshold {
-                    lit((block * BLOCK + i) as u32);
-                }
+        let (words, _) = pixels.as_chunks::<8>();
+        if words.iter().fold(0, |any, bytes| any | u64::from_le_bytes(*bytes)) == 0 {
+            continue;
+        }
+        for (word, bytes) in words.iter().enumerate() {
+            let mut left = u64::from_le_bytes(*bytes);
+            while left != 0 {
+                let byte = left.trailing_zeros() / 8;
+                lit((block * BLOCK + word * 8) as u32 + byte);
+                left &= !(0xff << (8 * byte));
             }
         }
     }

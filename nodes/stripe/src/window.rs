@@ -32,6 +32,7 @@ const MIN_SIDE_PX: usize = 2;
 
 impl Window {
     /// Reads the pixels of `run` and `reach` more on each side.
+    #[inline(always)]
     pub(crate) fn read(&mut self, channel: &LaserChannel, frame: &Frame, peaks_per: PeaksPer, run: Run, reach: usize) {
         let line = run.line as usize;
         let length = match peaks_per {
@@ -46,18 +47,21 @@ impl Window {
     }
 
     /// The last pixel of the clipped stretch that `last` lies in or before; itself when none is there.
+    #[inline(always)]
     pub(crate) fn clipped_to(&self, last: u32) -> u32 {
         let behind = &self.samples[last as usize + 1 - self.first..];
         last + behind.iter().take_while(|s| s.clipped).count() as u32
     }
 
     /// Mean of the samples `from..to`, and how many there are.
+    #[inline(always)]
     fn mean(&self, from: usize, to: usize) -> (f32, usize) {
         let side = &self.samples[from.min(to)..to];
         (side.iter().map(|s| s.grey).sum::<f32>() / side.len() as f32, side.len())
     }
 
     /// The outermost level on each side.
+    #[inline(always)]
     pub(crate) fn ends(&self) -> [f32; 2] {
         let n = self.samples.len();
         let few = SIDE_PX.min(n);
@@ -65,6 +69,7 @@ impl Window {
     }
 
     /// The background at `centre`, from the pixels farther than `clear` from it; `None` where the window ends before.
+    #[inline(always)]
     pub(crate) fn background(&self, centre: f32, clear: f32) -> Option<Background> {
         let n = self.samples.len();
         let left_end = (centre - clear).floor() + 1.0;
