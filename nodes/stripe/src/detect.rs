@@ -1,12 +1,12 @@
 //! A picture in, its stripe out.
 
+use crate::batch::{Measure, Measuring};
 use crate::channel::LaserChannel;
 use crate::choice::Choice;
 use crate::lateral::{Averaging, Lateral, LinePeak};
-use crate::line::{Lines, MeasureLine};
+use crate::measure::Candidate;
 use crate::refusal::Refusals;
 use crate::search::Search;
-use crate::window::Window;
 use crate::{Config, ConfigError, noise};
 use wire::{Frame, FrameError, LaserPlane, PeaksPer, Stripe, StripePeak};
 
@@ -21,7 +21,7 @@ pub struct StripeDetector {
     peaks_per: PeaksPer,
     search: Search,
     row: Vec<u8>,
-    window: Window,
+    candidates: Vec<Candidate>,
     peaks: Vec<LinePeak>,
     choice: Choice,
     lateral: Lateral,
@@ -39,7 +39,7 @@ impl StripeDetector {
             peaks_per: laser.peaks_per,
             search: Search::new(config.max_width_px),
             row: Vec::new(),
-            window: Window::default(),
+            candidates: Vec::new(),
             peaks: Vec::new(),
             choice: Choice::default(),
             lateral: Lateral::default(),
@@ -85,19 +85,20 @@ impl StripeDetector {
         let sigma = (noise_levels / levels.per_grey).max(self.config.noise_floor);
         let height = self.config.min_amplitude.max(self.config.min_noise_ratio * sigma);
         let threshold = (height * levels.per_grey).clamp(1.0, 254.0) as u8;
-        let mut lines = Lines {
+        let mut measuring = Measuring {
             config: &self.config,
             channel: &self.channel,
             frame,
             peaks_per: self.peaks_per,
             sigma,
-            window: &mut self.window,
+            candidates: &mut self.candidates,
             peaks: &mut self.peaks,
             refusals,
+            taken_to: (0, f32::NEG_INFINITY),
         };
         let arch = self.search.arch;
         self.search.run(frame, &levels, self.peaks_per, threshold, |runs| {
-            arch.dispatch(MeasureLine { lines: &mut lines, runs });
+            arch.dispatch(Measure { measuring: &mut measuring, runs });
         });
     }
 

@@ -17,20 +17,42 @@ const FIT_SIGMAS: f32 = 3.0;
 pub(crate) const CLEAR_PX: f32 = 1.5;
 /// A narrower weight would see too few pixels for its moments to be those of a Gaussian.
 const LEAST_WEIGHT_PX: f32 = 1.2;
-const ITERATIONS: usize = 4;
+/// Steps that are enough.
+pub(crate) const ITERATIONS: usize = 4;
 /// After a step so short the next would be a tenth of it, far below any sigma.
 const STEP_PX: f32 = 1e-2;
 
-/// A line that is not clipped. `Ok(None)` when the window ends before the background.
-#[inline(always)]
-pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Config) -> Result<Option<Peak>, Reason> {
-    let start = flanks.middle();
-    let (mut x, mut line) = (start, flanks.width().max(config.min_width_px));
-    let mut last = None;
-    for _ in 0..ITERATIONS {
-        let weight = line.max(LEAST_WEIGHT_PX);
-        let Some(background) = window.background(x, FIT_SIGMAS * weight + CLEAR_PX) else { return Ok(None) };
-        let [sum, first, second] = weighted_moments(window, x, weight, &background);
+/// A line that is not clipped, while it is fitted. Places are pixels of the window.
+#[derive(Debug)]
+pub(crate) struct Fit {
+    /// Where it began.
+    start: f32,
+    /// Where it is.
+    x: f32,
+    /// The right flank.
+    right: f32,
+    /// Standard deviations of the line, and of its weight in the last step.
+    line: f32,
+    weight: f32,
+    /// Weighted sum above the background, and the variance of that background's slope.
+    sum: f32,
+    slope_variance: f32,
+}
+
+impl Fit {
+    #[inline(always)]
+    pub(crate) fn new(flanks: &Flanks, config: &Config) -> Self {
+        let x = flanks.middle();
+        let line = flanks.width().max(config.min_width_px);
+        Self { start: x, x, right: flanks.right, line, weight: line, sum: 0.0, slope_variance: 0.0 }
+    }
+
+    /// One iteration; true when the next would change nothing.
+    #[inline(always)]
+    pub(crate) fn step(&mut self, window: &Window, config: &Config) -> Result<bool, Reason> {
+        let weight = self.line.max(LEAST_WEIGHT_PX);
+        let background = window.background(self.x, FIT_SIGMAS * weight + CLEAR_PX).ok_or(window.outside())?;
+        let [sum, first, second] = weighted_moments(window, self.x, weight, &background);
         let (mean, spread) = (first / sum, second / sum - (first / sum).powi(2));
         if !(sum > 0.0 && spread.is_finite()) {
             return Err(Reason::Shapeless);
@@ -41,22 +63,24 @@ pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Co
         // The product of line and weight has 1/spread = 1/line^2 + 1/weight^2, and its mean is the line's, shrunk alike.
         let square = 1.0 / (1.0 / spread - 1.0 / weight.powi(2)).max(0.4 / weight.powi(2));
         let step = mean * (square + weight.powi(2)) / weight.powi(2);
-        x += step;
-        line = square.sqrt().clamp(0.6 * line, 1.5 * line);
-        last = Some((sum, weight, background));
-        if (x - start).abs() > line + 1.0 {
+        self.x += step;
+        self.line = square.sqrt().clamp(0.6 * self.line, 1.5 * self.line);
+        (self.weight, self.sum, self.slope_variance) = (weight, sum, background.slope_variance);
+        if (self.x - self.start).abs() > self.line + 1.0 {
             return Err(Reason::Shapeless);
         }
-        if step.abs() < STEP_PX || line > 1.5 * config.max_width_px {
-            break;
-        }
+        Ok(step.abs() < STEP_PX || self.line > 1.5 * config.max_width_px)
     }
-    Ok(last.map(|(sum, weight, background)| {
+
+    /// After at least one step; `sigma` is the noise of a pixel.
+    #[inline(always)]
+    pub(crate) fn peak(&self, sigma: f32) -> Peak {
+        let &Self { x, line, weight, sum, .. } = self;
         let both = line * line + weight * weight;
         let amplitude = sum * (both / TAU).sqrt() / (line * weight);
         // All from x = sum y t g / sum y g, times both / weight^2; with equal widths the first is 2 w / (sqrt(pi) A^2).
         let pixel = both.powi(3) / (4.0 * PI.sqrt() * amplitude.powi(2) * line.powi(2) * weight.powi(3));
-        let slope = both.powi(3) / (amplitude * line).powi(2) * background.slope_variance;
+        let slope = both.powi(3) / (amplitude * line).powi(2) * self.slope_variance;
         Peak {
             position: x,
             amplitude,
@@ -64,9 +88,9 @@ pub(crate) fn gaussian(window: &Window, flanks: &Flanks, sigma: f32, config: &Co
             noise_variance: sigma * sigma * (pixel + slope),
             speckle_variance: line * both.powf(1.5) / (4.0 * PI.sqrt() * weight.powi(3)),
             clipped: false,
-            ends: flanks.right.max(x),
+            ends: self.right.max(x),
         }
-    }))
+    }
 }
 
 /// Sum, first and second moment about `x` of the line times a Gaussian weight of standard deviation `w`. The weights of

@@ -10,7 +10,7 @@
 //!    and blue cancels white light). YUYV goes by way of [`wire::YCbCr`]; GREY8 is taken as it is.
 //! 2. `noise`: the standard deviation of a pixel, from the picture itself.
 //! 3. `search`: one pass over all bytes, in vectors. What rises above *both* sides stands out: steps of ambient light do not.
-//! 4. `line`, `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian
+//! 4. `batch`, `measure`: there, the background of both sides is subtracted as a straight line (`window`), and a Gaussian
 //!    fitted (`gaussian`: Baker and Moallem 2007); of a clipped one the middle between its `flanks` is taken. What is too
 //!    wide, too narrow or too faint is refused and counted.
 //! 5. `support`: where the line is not seen, grains of noise and texture still stand out. No line goes on from them to the
@@ -22,7 +22,7 @@
 //! 8. `scatter`: what scatter along the stripe the pixels' noise does not explain is speckle, and goes into the sigma.
 //!
 //! Limits: two lines closer than about four of their widths are one. Every bump of the background that looks like a line
-//! costs as much time as a line, about 0.4 microseconds; weights that cancel white light spare that. The sigma knows noise and speckle, but not a bias
+//! costs as much time as a line, about 0.6 microseconds; weights that cancel white light spare that. The sigma knows noise and speckle, but not a bias
 //! that neighbouring lines share: an edge of the albedo under the line, a lopsided bloom.
 //!
 //! ```
@@ -54,6 +54,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod batch;
 mod channel;
 mod choice;
 mod config;
@@ -61,7 +62,6 @@ mod detect;
 mod flanks;
 mod gaussian;
 mod lateral;
-mod line;
 mod measure;
 mod noise;
 mod refusal;

@@ -6,6 +6,8 @@ use wire::{Frame, PeaksPer};
 
 /// Pixels that are passed over together where none is lit.
 const BLOCK: usize = 64;
+/// So many runs, or a few more, are handed over together: their bytes are still in the caches.
+const RUNS: usize = 32;
 /// Rows that are converted in one go (row by row, between comparisons, the memory cannot be read ahead).
 const BATCH: usize = 16;
 /// Lit stretches of one line that are closer belong together.
@@ -32,7 +34,7 @@ pub(crate) struct Search {
     excess: Vec<u8>,
     /// Which run of a column was the last (peaks per column).
     last_run: Vec<u32>,
-    /// Of one row, or of all columns.
+    /// What is not handed over yet, by line and along each line in the end.
     runs: Vec<Run>,
 }
 
@@ -52,7 +54,7 @@ impl Search {
         }
     }
 
-    /// Hands over, line by line, all that rises more than `threshold` levels above both sides.
+    /// Hands over all that rises more than `threshold` levels above both sides, by line and along each line.
     pub(crate) fn run(
         &mut self,
         frame: &Frame,
@@ -70,7 +72,6 @@ impl Search {
         }
     }
 
-    /// What a row holds is handed over at once, while its bytes are still in the first cache.
     fn rows(&mut self, frame: &Frame, levels: &Levels, threshold: u8, mut found: impl FnMut(&[Run])) {
         let [near, far] = self.reach;
         let (width, stride) = (frame.width as usize, frame.stride as usize);
@@ -84,13 +85,16 @@ impl Search {
             let shifted = |by: usize| &self.levels[by..by + width];
             let sides = [shifted(far - near), shifted(0), shifted(far + near), shifted(2 * far)];
             self.arch.dispatch(Excess { centre: shifted(far), sides, threshold, out: &mut self.excess[..width] });
-            self.runs.clear();
             for_each_lit(&self.excess, |u| match self.runs.last_mut() {
-                Some(run) if u <= run.last + JOIN_PX => run.last = u,
+                Some(run) if run.line == v as u32 && u <= run.last + JOIN_PX => run.last = u,
                 _ => self.runs.push(Run { line: v as u32, first: u, last: u }),
             });
-            found(&self.runs);
+            if self.runs.len() >= RUNS {
+                found(&self.runs);
+                self.runs.clear();
+            }
         }
+        found(&self.runs);
     }
 
     /// Down the picture row by row, as it lies in memory: a ring holds the rows that a pixel is compared with.
@@ -132,7 +136,7 @@ impl Search {
             });
         }
         self.runs.sort_unstable();
-        self.runs.chunk_by(|a, b| a.line == b.line).for_each(found);
+        self.runs.chunks(RUNS).for_each(found);
     }
 }
 

@@ -1,6 +1,7 @@
 //! The pixels of one line (a row or a column) around a stretch that stands out.
 
 use crate::channel::{LaserChannel, Sample};
+use crate::refusal::Reason;
 use crate::search::Run;
 use wire::{Frame, PeaksPer};
 
@@ -51,6 +52,12 @@ impl Window {
     pub(crate) fn clipped_to(&self, last: u32) -> u32 {
         let behind = &self.samples[last as usize + 1 - self.first..];
         last + behind.iter().take_while(|s| s.clipped).count() as u32
+    }
+
+    /// Why there is no peak where the window ends before the background.
+    #[inline(always)]
+    pub(crate) fn outside(&self) -> Reason {
+        if self.cut { Reason::Edge } else { Reason::Wide }
     }
 
     /// Mean of the samples `from..to`, and how many there are.
