@@ -40,6 +40,8 @@ pub use colour::{ColourError, ColourErrorReason, colour_error};
 pub use render::render;
 pub use seen::{Gate, seen_mask};
 pub use stated::{StatedError, stated_error};
-pub use summary::{Aligned, Counts, FrameError, Machine, Observed, Refined, Refused, Report, Run, Stage, Time};
+pub use summary::{
+    Aligned, Counts, FrameError, Machine, Observed, Refined, Refused, Report, Run, Stage, Time, TrackerNoise,
+};
 pub use view::{View, four_views, four_views_from_below};
 pub use write::{Exhibits, PageError};

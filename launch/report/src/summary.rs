@@ -61,6 +61,12 @@ pub struct Refined {
     pub residual_after_mm: f64,
     /// The rig's pose offset was found so much too large, with its sigma.
     pub offset_error_ms: [f64; 2],
+    /// Orientations were found so much older than the tracker says, with its sigma; that is 0 where nobody asked.
+    pub rotation_lag_ms: [f64; 2],
+    /// What the tracker's readings are like.
+    pub tracker: TrackerNoise,
+    /// False when the hand-eye transform was held fast.
+    pub hand_eye_freed: bool,
     /// Correction of the hand-eye shift: its length.
     pub hand_eye_shift_mm: f64,
     /// How well that is known.
@@ -75,11 +81,27 @@ pub struct Refined {
     pub frame_sigma_mm: f64,
     /// Frames left out.
     pub frames_dropped: u64,
+    /// Of these, so many because nothing else saw what they saw; the others fit nowhere.
+    pub frames_unheld: u64,
     /// All frames in the order of their stamps: for the plot, too many for the JSON.
     #[serde(skip)]
     pub frames: Vec<FrameError>,
     /// What the operator should know.
     pub notices: Vec<String>,
+}
+
+/// The readings of a tracker, as they and the surface show them.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TrackerNoise {
+    /// White noise of a reading, along one axis: one standard deviation.
+    pub position_mm: f64,
+    /// The same about one axis.
+    pub rotation_deg: f64,
+    /// How large the fast correction is beside what white noise allows; above 0.55 the noise is not white. `None` when too little was seen to tell.
+    pub excess: Option<f64>,
+    /// The variance that a reading was given, in units of its white noise.
+    pub inflation: f64,
 }
 
 /// What a scan determines, whatever its tracker.

@@ -3,7 +3,10 @@
 use formats::mesh::LoadedMesh;
 use geometry::{TriangleMesh, compare, distances_to};
 use nalgebra::Point3;
-use report::{BorderError, Exhibits, Machine, PageError, Refused, Report, Stage, caps, closed, four_views, render};
+use report::{
+    BorderError, Exhibits, Machine, PageError, Refined, Refused, Report, Stage, TrackerNoise, caps, closed, four_views,
+    render,
+};
 
 /// A tetrahedron of 40 mm, moved by `shift_m` along x.
 fn tetrahedron(shift_m: f32) -> LoadedMesh {
@@ -96,6 +99,41 @@ fn what_nobody_measured_is_told_apart_and_held_against_the_truth() {
     let open = closed(&surface.without_caps()).expect("a surface");
     assert!(!open.watertight && open.open_edges == 3 && open.unmeasured_share == 0.0);
     assert!(page(&Report { closed: Some(open), ..full() }, &Exhibits::default()).contains("no: 3 edges are open"));
+}
+
+#[test]
+fn what_refinement_held_fast_or_was_not_asked_is_no_zero() {
+    let tracker = TrackerNoise { position_mm: 0.87, rotation_deg: 1.73, excess: Some(0.66), inflation: 30.0 };
+    let asked = Refined {
+        rotation_lag_ms: [4.25, 0.31],
+        tracker,
+        hand_eye_freed: true,
+        hand_eye_turn_deg: 0.52,
+        hand_eye_turn_sigma_deg: 0.11,
+        frames_dropped: 7,
+        frames_unheld: 2,
+        ..Refined::default()
+    };
+    let of =
+        |refinement: &Refined| page(&Report { refinement: Some(refinement.clone()), ..full() }, &Exhibits::default());
+    let html = of(&asked);
+    for told in [
+        "4.25 \u{b1} 0.31 ms",
+        "0.52 \u{b1} 0.11 degrees",
+        "0.87 mm",
+        "1.73 degrees",
+        "0.66 times",
+        "30.0 times less",
+        "5 that fit nowhere, 2 that nothing held",
+    ] {
+        assert!(html.contains(told), "{told}");
+    }
+    let html = of(&Refined::default());
+    for told in [">not asked<", ">held<", "too little was seen to tell", "as their noise allows"] {
+        assert!(html.contains(told), "{told}");
+    }
+    let json = serde_json::to_string(&asked).expect("plain numbers");
+    assert_eq!(serde_json::from_str::<Refined>(&json).expect("its own words"), asked);
 }
 
 #[test]

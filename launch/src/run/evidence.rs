@@ -4,7 +4,7 @@ use super::Harvest;
 use geometry::{METRES_PER_MM, MeshIndex, TriangleMesh};
 use nalgebra::Point3;
 use rayon::prelude::*;
-use report::{FrameError, Observed, Refined};
+use report::{FrameError, Observed, Refined, TrackerNoise};
 use wire::{CloudPoint, FrameFit, Refinement};
 
 /// What refinement says of its work; `without` is for whoever knows the truth.
@@ -17,6 +17,14 @@ pub fn refined(refinement: &Refinement) -> Refined {
         residual_before_mm: mm(refinement.residual_before_m),
         residual_after_mm: mm(refinement.residual_after_m),
         offset_error_ms: [ms(refinement.pose_offset_error_nanos), ms(refinement.pose_offset_sigma_nanos)],
+        rotation_lag_ms: [ms(refinement.rotation_lag_error_nanos), ms(refinement.rotation_lag_sigma_nanos)],
+        tracker: TrackerNoise {
+            position_mm: mm(refinement.tracker.white_position_m),
+            rotation_deg: refinement.tracker.white_rotation_rad.to_degrees(),
+            excess: refinement.tracker.excess,
+            inflation: refinement.tracker.inflation,
+        },
+        hand_eye_freed: refinement.hand_eye_freed,
         hand_eye_shift_mm: mm(length(refinement.hand_eye_shift_m)),
         hand_eye_shift_sigma_mm: mm(length(refinement.hand_eye_shift_sigma_m)),
         hand_eye_turn_deg: length(refinement.hand_eye_turn_rad).to_degrees(),
@@ -27,7 +35,8 @@ pub fn refined(refinement: &Refinement) -> Refined {
             held_directions: observed.held_directions,
         }),
         frame_sigma_mm: median_sigma_mm(&refinement.frames),
-        frames_dropped: refinement.left_out.len() as u64,
+        frames_dropped: refinement.left_out().count() as u64,
+        frames_unheld: refinement.unheld.len() as u64,
         frames: frames(refinement),
         notices: refinement.notices.clone(),
     }
@@ -41,7 +50,7 @@ fn median_sigma_mm(frames: &[FrameFit]) -> f64 {
 
 /// Those that were kept and those that were not, in the order of their stamps, from the first of them on.
 fn frames(refinement: &Refinement) -> Vec<FrameError> {
-    let all = || refinement.frames.iter().map(|f| (f, false)).chain(refinement.left_out.iter().map(|f| (f, true)));
+    let all = || refinement.frames.iter().map(|f| (f, false)).chain(refinement.left_out().map(|f| (f, true)));
     let first = all().map(|(fit, _)| fit.stamp_nanos).min().unwrap_or_default();
     let error = |(fit, left_out): (&FrameFit, bool)| FrameError {
         at_s: fit.stamp_nanos.saturating_sub(first) as f64 * 1e-9,

@@ -56,7 +56,7 @@ pub use mesh::Mesh;
 pub use model::Model;
 pub use pose::{Pose, Quality, RigidPose};
 pub use profile::{Profile, ProfilePoint};
-pub use refinement::{FrameFit, Observed, Refinement};
+pub use refinement::{FrameFit, Observed, Refinement, TrackerFit};
 pub use scan::{Scan, ScanPoint};
 pub use stripe::{Stripe, StripePeak};
 pub use trajectory::{Trajectory, TrajectorySample};

@@ -28,6 +28,22 @@ layout! {
 }
 
 layout! {
+    /// What the tracker's readings are like, by themselves and by the surface.
+    #[derive(Copy)]
+    pub struct TrackerFit {
+        /// White noise of a reading, along one axis.
+        pub white_position_m: f64,
+        /// White noise of a reading, about one axis.
+        pub white_rotation_rad: f64,
+        /// How large the fast correction is beside what white noise allows; above 0.55 the noise is not white. `None` when the
+        /// scan holds too little to tell, and in live revisions.
+        pub excess: Option<f64>,
+        /// The variance that a reading was given, in units of its white noise: above 1 it was believed less.
+        pub inflation: f64,
+    }
+}
+
+layout! {
     /// What one revision rests on. Sigmas are one standard deviation.
     pub struct Refinement {
         /// The revision is that of the trajectory.
@@ -40,7 +56,15 @@ layout! {
         pub pose_offset_error_nanos: i64,
         /// How well that is known; 0 when nobody has asked yet (live revisions).
         pub pose_offset_sigma_nanos: i64,
-        /// Correction of the hand-eye transform along the axes of the body; zeros when it was held fast.
+        /// Orientations are so much older than the tracker says, apart from that offset; 0 where nobody asked.
+        pub rotation_lag_error_nanos: i64,
+        /// How well that is known; 0 where nobody asked.
+        pub rotation_lag_sigma_nanos: i64,
+        /// What the tracker's readings are like.
+        pub tracker: TrackerFit,
+        /// False when the hand-eye transform was held fast.
+        pub hand_eye_freed: bool,
+        /// Its correction along the axes of the body; zeros when it was held fast.
         pub hand_eye_shift_m: [f64; 3],
         /// The same about the axes of the body.
         pub hand_eye_turn_rad: [f64; 3],
@@ -48,14 +72,23 @@ layout! {
         pub hand_eye_shift_sigma_m: [f64; 3],
         /// How well the turn is known.
         pub hand_eye_turn_sigma_rad: [f64; 3],
-        /// What the scan determines; `None` when nobody has asked yet (live revisions).
+        /// What the scan determines; `None` when nobody has asked yet (live revisions, until enough was seen).
         pub observed: Option<Observed>,
         /// What the operator should know, in sentences.
         pub notices: Vec<String>,
         /// The frames that were kept, in the order of their stamps.
         pub frames: Bulk<FrameFit>,
-        /// Those that were left out, because they fit nowhere or nothing held them.
-        pub left_out: Bulk<FrameFit>,
+        /// Left out because their points stand off the surface that all others agree on.
+        pub misfits: Bulk<FrameFit>,
+        /// Left out because nothing else saw what they saw, so nothing says where they were.
+        pub unheld: Bulk<FrameFit>,
     }
 }
-message!(Refinement @ 2);
+message!(Refinement @ 3);
+
+impl Refinement {
+    /// All frames that were left out, for either reason.
+    pub fn left_out(&self) -> impl Iterator<Item = &FrameFit> {
+        self.misfits.iter().chain(self.unheld.iter())
+    }
+}

@@ -1,7 +1,7 @@
 //! What a revision rests on, in the words and numbers of the bus.
 
-use crate::{Evidence, sentence};
-use wire::{Bulk, FrameFit, Header, Observed, Refinement};
+use crate::{DropReason, Evidence, sentence};
+use wire::{Bulk, FrameFit, Header, Observed, Refinement, TrackerFit};
 
 /// As a message.
 pub(crate) fn message(evidence: &Evidence, header: Header) -> Refinement {
@@ -13,14 +13,27 @@ pub(crate) fn message(evidence: &Evidence, header: Header) -> Refinement {
         sigma_m: metres(sigma_mm) as f32,
     };
     let kept = evidence.frames.iter().map(|frame| fit(frame.stamp_nanos, frame.residual_mm, frame.sigma_mm));
-    let left_out = evidence.dropped.iter().map(|frame| fit(frame.stamp_nanos, frame.residual_mm, frame.sigma_mm));
-    let hand_eye = &evidence.hand_eye;
+    let left_out = |reason: DropReason| {
+        let dropped = evidence.dropped.iter().filter(move |frame| frame.reason == reason);
+        dropped.map(|frame| fit(frame.stamp_nanos, frame.residual_mm, frame.sigma_mm)).collect::<Bulk<_>>()
+    };
+    let (clock, hand_eye, tracker) = (&evidence.clock, &evidence.hand_eye, &evidence.tracker);
+    let lag = clock.rotation_lag_sigma_ms.map(|sigma| [clock.rotation_lag_ms, sigma].map(nanos)).unwrap_or_default();
     Refinement {
         header,
         residual_before_m: metres(evidence.residual.before_mm),
         residual_after_m: metres(evidence.residual.after_mm),
-        pose_offset_error_nanos: nanos(evidence.clock.tau_ms),
-        pose_offset_sigma_nanos: evidence.clock.sigma_ms.map_or(0, nanos),
+        pose_offset_error_nanos: nanos(clock.tau_ms),
+        pose_offset_sigma_nanos: clock.sigma_ms.map_or(0, nanos),
+        rotation_lag_error_nanos: lag[0],
+        rotation_lag_sigma_nanos: lag[1],
+        tracker: TrackerFit {
+            white_position_m: metres(tracker.white_position_mm),
+            white_rotation_rad: tracker.white_rotation_deg.to_radians(),
+            excess: tracker.excess,
+            inflation: tracker.inflation,
+        },
+        hand_eye_freed: hand_eye.freed,
         hand_eye_shift_m: hand_eye.shift_mm.map(metres),
         hand_eye_turn_rad: hand_eye.turn_deg.map(f64::to_radians),
         hand_eye_shift_sigma_m: hand_eye.shift_sigma_mm.map(metres),
@@ -32,6 +45,7 @@ pub(crate) fn message(evidence: &Evidence, header: Header) -> Refinement {
         }),
         notices: evidence.notices.iter().map(sentence).collect(),
         frames: kept.collect::<Bulk<_>>(),
-        left_out: left_out.collect::<Bulk<_>>(),
+        misfits: left_out(DropReason::FitsNowhere),
+        unheld: left_out(DropReason::Unheld),
     }
 }

@@ -10,12 +10,15 @@
 
 pub mod cloud;
 pub mod config;
+pub mod evidence;
 pub mod handset;
 #[cfg(feature = "node")]
 mod layout;
 #[cfg(feature = "node")]
 pub mod node;
 pub mod picture;
+#[cfg(feature = "node")]
+mod refined;
 #[cfg(feature = "node")]
 mod serve;
 #[cfg(feature = "node")]

@@ -1,8 +1,9 @@
 //! The wiring: takes the newest of everything and shows it.
 
 use crate::cloud::ChunkedCloud;
+use crate::evidence::Plotted;
 use crate::ways::Ways;
-use crate::{Config, picture, serve, show};
+use crate::{Config, picture, refined, serve, show};
 use kit::{Input, Node};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -72,6 +73,7 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
     let served = serve::start(&config)?;
     let rec = &served.recording;
     show::world(rec)?;
+    refined::styles(rec)?;
     node.ready()?;
     tracing::info!("look: {}", served.url);
     let calibration = node.calibration(&rig)?;
@@ -80,7 +82,7 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
 
     let (mut pictures, mut surfaces) = (Rate::new(config.pictures_per_s), Rate::new(config.surfaces_per_s));
     let (mut cloud, mut trail, mut painted) = (ChunkedCloud::default(), Vec::new(), false);
-    let mut ways = Ways::default();
+    let (mut ways, mut plotted) = (Ways::default(), Plotted::default());
     let mut reports: BTreeMap<String, (Instant, Health)> = BTreeMap::new();
     while node.wait() {
         if pictures.admits() {
@@ -90,7 +92,8 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
             ways.refined(&way);
         }
         if let Some(evidence) = inputs.refinements.newest() {
-            show::ways(rec, &ways, &evidence)?;
+            show::at(rec, &evidence.header);
+            refined::refined(rec, &ways, &evidence, &mut plotted)?;
         }
         while let Some(changes) = inputs.clouds.next() {
             painted &= changes.header.phase == Phase::End;

@@ -3,25 +3,22 @@
 use crate::cloud::ChunkedCloud;
 use crate::handset::handset;
 use crate::picture::Picture;
-use crate::ways::Ways;
 use rerun::{
     Boxes3D, ImageFormat, LineStrips3D, Mesh3D, Pinhole, Points2D, Points3D, Quaternion, RecordingStream, Scalars,
     TextLog, Transform3D, ViewCoordinates,
 };
-use wire::{Calibration, Header, Health, LogLevel, LogLine, Mesh, Model, Refinement, Scan, Stripe, Trajectory};
+use wire::{Calibration, Header, Health, LogLevel, LogLine, Mesh, Model, Scan, Stripe, Trajectory};
 
 type Result = rerun::RecordingStreamResult<()>;
 
 /// Red, green, blue.
 const LASER_RED: [u8; 3] = [255, 60, 40];
 const CLAY: [u8; 3] = [196, 178, 158];
-const TRAIL: [u8; 3] = [90, 150, 220];
-const REFINED: [u8; 3] = [70, 190, 110];
+pub(crate) const TRAIL: [u8; 3] = [90, 150, 220];
+pub(crate) const REFINED: [u8; 3] = [70, 190, 110];
 const HOUSING: [u8; 3] = [120, 124, 130];
 /// Seen through: the thing behind it is what counts.
 const LIGHT: [u8; 4] = [255, 60, 40, 60];
-/// Of the refined way's samples, which are as dense as the hand trembles.
-const DRAWN_EVERY: usize = 10;
 
 /// All that follows was measured at this stamp.
 pub(crate) fn at(rec: &RecordingStream, header: &Header) {
@@ -79,15 +76,6 @@ pub(crate) fn trajectory(rec: &RecordingStream, trajectory: &Trajectory, trail: 
     let start = trail.len().saturating_sub(200);
     trail.drain(..start);
     rec.log("world/trail", &LineStrips3D::new([trail.clone()]).with_colors([TRAIL]).with_radii([0.0004]))
-}
-
-/// The tracker's way, the refined one, and the pictures on it.
-pub(crate) fn ways(rec: &RecordingStream, ways: &Ways, evidence: &Refinement) -> Result {
-    let line = |places: Vec<[f32; 3]>, colour| LineStrips3D::new([places]).with_colors([colour]).with_radii([4e-4]);
-    rec.log("way/tracker", &line(ways.by_tracker().to_vec(), TRAIL))?;
-    rec.log("way/refined", &line(ways.by_refinement(DRAWN_EVERY), REFINED))?;
-    let (places, colours): (Vec<_>, Vec<_>) = ways.pictures(evidence).into_iter().unzip();
-    rec.log("way/pictures", &Points3D::new(places).with_colors(colours).with_radii([1.2e-3]))
 }
 
 pub(crate) fn scan(rec: &RecordingStream, scan: &Scan) -> Result {

@@ -1,6 +1,6 @@
 //! Two ways of one hand: as the tracker had it, and as refinement has it, with how well each picture fits the surface.
 
-use wire::{FrameFit, Refinement, Trajectory};
+use wire::{FrameFit, Trajectory};
 
 const NOT_KNOWN: [u8; 3] = [150, 150, 150];
 /// A picture that is so far off the surface is as red as can be.
@@ -56,12 +56,12 @@ impl Ways {
 
     /// Where each picture was taken, green when it fits the surface and red when it does not; those beyond the refined
     /// way are left out.
-    pub fn pictures(&self, evidence: &Refinement) -> Vec<([f32; 3], [u8; 3])> {
+    pub fn pictures(&self, fits: &[FrameFit]) -> Vec<([f32; 3], [u8; 3])> {
         let at = |fit: &FrameFit| {
             let after = self.refined.partition_point(|(stamp, _)| *stamp < fit.stamp_nanos);
             Some((self.refined.get(after)?.1, by_residual(fit.residual_m)))
         };
-        evidence.frames.iter().filter_map(at).collect()
+        fits.iter().filter_map(at).collect()
     }
 }
 

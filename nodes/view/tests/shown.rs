@@ -4,12 +4,13 @@
 
 use nalgebra::{Point3, Vector3};
 use view::cloud::{CHUNK, ChunkedCloud};
+use view::evidence::{Plotted, summary};
 use view::handset::handset;
 use view::picture::shrink;
 use view::ways::Ways;
 use wire::{
-    Bulk, Cloud, CloudPoint, Extent, Frame, FrameFit, Header, LaserPlane, Light, PeaksPer, PixelFormat, Refinement,
-    Trajectory, TrajectorySample,
+    Bulk, Cloud, CloudPoint, Extent, Frame, FrameFit, Header, LaserPlane, Light, Observed, PeaksPer, PixelFormat,
+    Refinement, TrackerFit, Trajectory, TrajectorySample,
 };
 
 fn laser(normal: [f64; 3], distance_m: f64) -> LaserPlane {
@@ -60,6 +61,10 @@ fn evidence(fits: &[(i64, f32)]) -> Refinement {
         residual_after_m: 0.0,
         pose_offset_error_nanos: 0,
         pose_offset_sigma_nanos: 0,
+        rotation_lag_error_nanos: 0,
+        rotation_lag_sigma_nanos: 0,
+        tracker: TrackerFit { white_position_m: 1e-3, white_rotation_rad: 0.0, excess: None, inflation: 3.0 },
+        hand_eye_freed: false,
         hand_eye_shift_m: [0.0; 3],
         hand_eye_turn_rad: [0.0; 3],
         hand_eye_shift_sigma_m: [0.0; 3],
@@ -67,7 +72,8 @@ fn evidence(fits: &[(i64, f32)]) -> Refinement {
         observed: None,
         notices: Vec::new(),
         frames: fits.iter().map(fit).collect::<Bulk<_>>(),
-        left_out: Bulk::default(),
+        misfits: Bulk::default(),
+        unheld: Bulk::default(),
     }
 }
 
@@ -92,14 +98,59 @@ fn a_higher_revision_or_scan_starts_the_ways_afresh() {
 #[test]
 fn pictures_stand_on_the_refined_way_and_redden_as_they_misfit() {
     let mut ways = Ways::default();
-    assert!(ways.pictures(&evidence(&[(0, 0.0)])).is_empty(), "there is no way yet");
+    assert!(ways.pictures(&evidence(&[(0, 0.0)]).frames).is_empty(), "there is no way yet");
     ways.refined(&way(1, 1, &[(0, 0.0), (10, 0.1), (20, 0.2)]));
-    let shown = ways.pictures(&evidence(&[(0, 0.0), (9, 1e-4), (20, 1.0), (15, f32::NAN), (21, 0.0)]));
+    let shown = ways.pictures(&evidence(&[(0, 0.0), (9, 1e-4), (20, 1.0), (15, f32::NAN), (21, 0.0)]).frames);
     let places: Vec<f32> = shown.iter().map(|(place, _)| place[0]).collect();
     assert_eq!(places, [0.0, 0.1, 0.2, 0.2], "the last is beyond the way");
     let [fits, half, worst, unknown] = [0, 1, 2, 3].map(|k| shown[k].1);
     assert!(fits[1] > fits[0] && half[0] > fits[0] && half[1] < fits[1] && worst[0] > worst[1]);
     assert!(unknown[0] == unknown[1] && unknown[1] == unknown[2]);
+}
+
+#[test]
+fn each_picture_is_plotted_once_while_the_hand_moves_and_all_of_them_in_the_end() {
+    let mut plotted = Plotted::default();
+    let mut told = evidence(&[(0, 1e-4), (20, f32::NAN)]);
+    told.misfits = vec![FrameFit { stamp_nanos: 30, residual_m: 2e-3, sigma_m: 1e-5 }].into();
+    told.unheld = vec![FrameFit { stamp_nanos: 10, residual_m: f32::NAN, sigma_m: 3e-3 }].into();
+    let stamps = |plotted: &mut Plotted, told: &Refinement| plotted.newer(told).map(|series| series.stamps_nanos);
+    assert_eq!(
+        stamps(&mut plotted, &told),
+        [vec![0, 20], vec![0], vec![30], vec![10]],
+        "what is not known is no value"
+    );
+    // One that was left out is kept now, one is new.
+    told.misfits = Bulk::default();
+    told.frames = evidence(&[(0, 1e-4), (20, 1e-4), (30, 1e-4), (40, 1e-4)]).frames;
+    assert_eq!(stamps(&mut plotted, &told), [vec![40], vec![40], vec![], vec![]]);
+    told.pose_offset_sigma_nanos = 1;
+    let all = plotted.newer(&told);
+    assert_eq!((all[0].values_mm.len(), all[3].stamps_nanos.clone()), (4, vec![10]));
+    assert!((all[3].values_mm[0] - 3.0).abs() < 1e-6 && (all[1].values_mm[0] - 0.1).abs() < 1e-6, "millimetres");
+    told.header.scan = 2;
+    told.pose_offset_sigma_nanos = 0;
+    assert_eq!(stamps(&mut plotted, &told)[0], [0, 20, 30, 40], "a new scan begins again");
+}
+
+#[test]
+fn the_facts_tell_what_was_held_and_what_nobody_asked() {
+    let mut told = evidence(&[(0, 1e-4)]);
+    told.notices = vec!["strokes do not cross".to_owned()];
+    let text = summary(&told);
+    for fact in ["while the scan goes on", "**strokes do not cross**", "hand-eye shift | held", "not asked", "3 times"]
+    {
+        assert!(text.contains(fact), "{fact}: {text}");
+    }
+    assert!(!text.contains("crossed by stripes"));
+    told.observed = Some(Observed { crossing: 0.42, stripes_along: [0.0, 0.0, 1.0], held_directions: 5 });
+    (told.hand_eye_freed, told.hand_eye_shift_m, told.hand_eye_shift_sigma_m) = (true, [1e-3; 3], [1e-4; 3]);
+    (told.pose_offset_error_nanos, told.pose_offset_sigma_nanos) = (-1_500_000, 250_000);
+    (told.rotation_lag_error_nanos, told.rotation_lag_sigma_nanos) = (4_000_000, 500_000);
+    let text = summary(&told);
+    for fact in ["-1.50 \u{b1} 0.25 ms", "4.00 \u{b1} 0.50 ms", "1.73 \u{b1} 0.17 mm", "42 %", "5 of 6", "final"] {
+        assert!(text.contains(fact), "{fact}: {text}");
+    }
 }
 
 #[test]

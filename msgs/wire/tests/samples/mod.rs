@@ -226,6 +226,10 @@ impl Sample for Refinement {
             residual_after_m: 1e-4,
             pose_offset_error_nanos: -15_000_000,
             pose_offset_sigma_nanos: 200_000,
+            rotation_lag_error_nanos: 4_000_000,
+            rotation_lag_sigma_nanos: 300_000,
+            tracker: TrackerFit { white_position_m: 8e-4, white_rotation_rad: 0.03, excess: Some(0.7), inflation: 2.5 },
+            hand_eye_freed: true,
             hand_eye_shift_m: [1e-3, -2e-3, 3e-3],
             hand_eye_turn_rad: [0.01, -0.02, 0.03],
             hand_eye_shift_sigma_m: [1e-4, 2e-4, 3e-4],
@@ -233,7 +237,8 @@ impl Sample for Refinement {
             observed: Some(Observed { crossing: 0.8, stripes_along: [0.0, 0.6, 0.8], held_directions: 6 }),
             notices: vec!["strokes do not cross".to_owned()],
             frames: Bulk(vec![fit; 2]),
-            left_out: Bulk(vec![fit]),
+            misfits: Bulk(vec![fit]),
+            unheld: Bulk(vec![fit; 3]),
         }
     }
 }
