@@ -101,6 +101,30 @@ fn what_nobody_measured_is_told_apart_and_held_against_the_truth() {
     assert!(page(&Report { closed: Some(open), ..full() }, &Exhibits::default()).contains("no: 3 edges are open"));
 }
 
+/// The row of pictures of this name.
+fn figure<'a>(html: &'a str, name: &str) -> &'a str {
+    let from = html.find(&format!("<b>{name}</b>")).unwrap_or_else(|| panic!("no row {name}"));
+    html[from..].split("</figure>").next().expect("it ends")
+}
+
+#[test]
+fn the_error_is_drawn_on_what_was_measured_as_the_expected_one_is() {
+    let (closed, truth) = (tetrahedron(1e-4), tetrahedron(0.0));
+    let mut open = closed.clone();
+    open.mesh.triangles.truncate(3);
+    let sigma_m = vec![1e-4; open.mesh.vertices.len()];
+    let alone = Exhibits { model: Some(&open), truth: Some(&truth), ..Exhibits::default() };
+    let capped = Exhibits { model: Some(&closed), measured: Some(3), ..alone };
+    let stated = Exhibits { stated: Some((&open.mesh, &sigma_m)), ..capped };
+    let all = Exhibits { measured: None, ..capped };
+    let [alone, capped, stated, all] = [alone, capped, stated, all].map(|exhibits| page(&full(), &exhibits));
+    assert_eq!(figure(&alone, "Error"), figure(&capped, "Error"));
+    assert_eq!(figure(&alone, "Error"), figure(&stated, "Error"));
+    assert_ne!(figure(&alone, "Error"), figure(&all, "Error"), "the cap is seen from one of the sides");
+    assert_ne!(figure(&alone, "Shape"), figure(&capped, "Shape"), "the model itself is shown closed");
+    assert!(figure(&stated, "Expected error").matches("data:image/png").count() == 4);
+}
+
 #[test]
 fn what_refinement_held_fast_or_was_not_asked_is_no_zero() {
     let tracker = TrackerNoise { position_mm: 0.87, rotation_deg: 1.73, excess: Some(0.66), inflation: 30.0 };

@@ -7,6 +7,7 @@ use crate::{Exhibits, PageError, View, error_map, four_views, four_views_from_be
 use formats::mesh::LoadedMesh;
 use geometry::{METRES_PER_MM, TriangleMesh};
 use image::RgbaImage;
+use std::borrow::Cow;
 
 const WIDTH: u32 = 420;
 const HEIGHT: u32 = 340;
@@ -43,9 +44,10 @@ pub fn gallery(exhibits: &Exhibits<'_>, end_mm: f64) -> Result<String, PageError
 /// What is shown as colours of one scale, which stands beside the first of them.
 fn maps(exhibits: &Exhibits<'_>, views: &[View], end_mm: f64) -> Result<String, PageError> {
     let mut maps: Vec<(&str, &str, Vec<RgbaImage>)> = Vec::new();
-    if let (Some(model), Some(truth)) = (exhibits.model, exhibits.truth) {
-        let pictures = error_pictures(&model.mesh, &truth.mesh, views, end_mm)?;
-        maps.push(("Error", "Distance of the model from the truth: blue is inside, red outside.", pictures));
+    if let (Some(surface), Some(truth)) = (measured_surface(exhibits), exhibits.truth) {
+        let pictures = error_pictures(&surface, &truth.mesh, views, end_mm)?;
+        let caption = "Distance of what was measured from the truth: blue is inside, red outside.";
+        maps.push(("Error", caption, pictures));
     }
     if let Some((mesh, residual_m)) = exhibits.residual {
         let caption =
@@ -63,6 +65,20 @@ fn maps(exhibits: &Exhibits<'_>, views: &[View], end_mm: f64) -> Result<String, 
         rows.push_str(&row(name, &format!("{caption}{scale}"), pictures)?);
     }
     Ok(rows)
+}
+
+/// What was measured of the model, without what closes it: the error beside the expected one is that of the same surface.
+fn measured_surface<'a>(exhibits: &Exhibits<'a>) -> Option<Cow<'a, TriangleMesh>> {
+    if let Some((surface, _)) = exhibits.stated.or(exhibits.residual) {
+        return Some(Cow::Borrowed(surface));
+    }
+    let mesh = &exhibits.model?.mesh;
+    let measured = exhibits.measured.unwrap_or(mesh.triangles.len()).min(mesh.triangles.len());
+    if measured == mesh.triangles.len() {
+        return Some(Cow::Borrowed(mesh));
+    }
+    let triangles = mesh.triangles[..measured].to_vec();
+    Some(Cow::Owned(TriangleMesh { triangles, ..mesh.clone() }))
 }
 
 fn row(name: &str, caption: &str, pictures: &[RgbaImage]) -> Result<String, PageError> {
