@@ -14,7 +14,7 @@ element! {
         pub spread_m: f32,
         /// One standard deviation of the mean along the normal.
         pub sigma_m: f32,
-        /// How many points were averaged.
+        /// How many points were averaged. 0 among changes: the ball is no longer part of the cloud.
         pub count: u32,
         /// The number of the ball: it stays the same while the ball grows.
         pub id: u32,
@@ -59,4 +59,4 @@ layout! {
         pub refused: Vec<Refusal>,
     }
 }
-message!(Cloud @ 2);
+message!(Cloud @ 3);

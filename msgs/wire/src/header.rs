@@ -36,7 +36,7 @@ layout! {
         pub scan: u64,
         /// The phase that the source was in.
         pub phase: Phase,
-        /// 0 is live; a refinement sends the whole scan again under a higher number.
+        /// 0 is live; a refinement sends the scan, or what changed of it, again under a higher number.
         pub revision: u32,
         /// Counted by the publisher of this topic, from 0. A gap is a loss.
         pub seq: u64,

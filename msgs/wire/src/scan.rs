@@ -1,7 +1,7 @@
 //! The points of one picture in the world (paper, section 2.3: R x + p).
 
 use crate::layout::{element, layout, message};
-use crate::{Bulk, Header, Refusal, RigidPose};
+use crate::{Bulk, Extent, Header, Refusal, RigidPose};
 
 element! {
     /// One measured point.
@@ -23,6 +23,9 @@ layout! {
     pub struct Scan {
         /// The stamp is the frame's.
         pub header: Header,
+        /// What becomes of what came under lower revisions. [`Extent::Whole`]: it is void. [`Extent::Changes`]: it stands, but
+        /// for the picture of this stamp, of which these are now the points.
+        pub extent: Extent,
         /// Where the camera was.
         pub world_from_camera: RigidPose,
         /// One standard deviation of the camera's position, as the tracker states it.
@@ -38,13 +41,14 @@ layout! {
         pub refused: Vec<Refusal>,
     }
 }
-message!(Scan @ 2);
+message!(Scan @ 3);
 
 impl Scan {
     /// No points: of a picture without a pose, and behind the last one.
     pub fn none(header: Header) -> Self {
         Self {
             header,
+            extent: Extent::Whole,
             world_from_camera: RigidPose::IDENTITY,
             position_sigma_m: 0.0,
             rotation_sigma_rad: 0.0,

@@ -13,7 +13,7 @@ const SIGMA_STEP_M: f32 = 1e-7;
 const SIGMA_STEPS_MOST: f32 = 1e5;
 
 /// What a ball needs of a point.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub struct Sample {
     /// In the world.
     pub position_m: [f32; 3],
@@ -41,6 +41,13 @@ impl Sample {
     }
 }
 
+impl Sample {
+    /// The mark of its picture.
+    pub fn picture(&self) -> u16 {
+        self.picture
+    }
+}
+
 fn sigma_steps(sigma_m: f32) -> u32 {
     (sigma_m / SIGMA_STEP_M).clamp(0.0, SIGMA_STEPS_MOST) as u32
 }
@@ -57,7 +64,7 @@ pub struct Ball {
     /// How many points it has.
     pub count: u32,
     /// From how many pictures they came: so many of their errors are independent. It is not lowered again when points leave
-    /// for a younger ball.
+    /// for a younger ball, but when a picture leaves.
     pub pictures: u32,
     latest_picture: u16,
     /// The list of its points that may yet go to another ball (see `movable`).
@@ -124,6 +131,15 @@ impl Ball {
         self.count -= 1;
         self.variance -= square(sample.sigma_steps);
         self.region_variance -= square(sample.region_sigma_steps);
+    }
+
+    /// All points of a picture have left.
+    pub fn forget(&mut self, picture: u16) {
+        self.pictures = self.pictures.saturating_sub(1);
+        if self.latest_picture == picture {
+            // Should it come again, it counts again.
+            self.latest_picture = !picture;
+        }
     }
 
     fn sum(&mut self, sample: &Sample, steps_per_metre: f32, sign: i64) {

@@ -3,6 +3,7 @@
 use crate::ball::{Ball, Sample, steps_per_metre};
 use crate::grid::{CentreGrid, distance_squared};
 use crate::movable::{END, MovablePoints, SETTLED};
+use crate::pictures::Pictures;
 use crate::{Config, ConfigError, Table, output, table};
 use nalgebra::Vector3;
 use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan, ScanPoint};
@@ -12,6 +13,10 @@ use wire::{Cloud, CloudPoint, Extent, Header, Phase, Refusal, Scan, ScanPoint};
 /// The result is that of the paper's two passes over all points in the order in which they came, whatever the batches:
 /// the first pass looks only at what came before, so it can run along; and when a ball is founded, those earlier points
 /// that are closer to it than to their own centre go over to it, as the second pass would have had them.
+///
+/// A picture that comes again with what changed ([`Extent::Changes`]) takes its own place: its points of before leave their
+/// balls without a trace. Only the centres stay where they once were founded, so such a cloud is for the eye; a scan that is
+/// sent whole is clustered as if nothing had been before.
 pub struct BallClusterer {
     config: Config,
     state: State,
@@ -33,6 +38,7 @@ pub(crate) struct State {
     pub balls: Vec<Ball>,
     pub grid: CentreGrid,
     movable: MovablePoints,
+    pictures: Pictures,
     /// Balls that changed since they were last asked for.
     changed: Vec<u32>,
     pub radius_m: f32,
@@ -67,7 +73,8 @@ impl BallClusterer {
         self.afresh = true;
     }
 
-    /// Takes the points of one picture. A scan of a higher number or revision starts afresh, one of a lower number or
+    /// Takes the points of one picture. A scan of a higher number or revision starts afresh, unless it is a change of the
+    /// same scan: then its points take the place of those that the picture of the same stamp had. One of a lower number or
     /// revision is refused, as is each point that is not finite or lies beyond 2^20 D from the origin. While the operator
     /// is aiming nothing is kept.
     pub fn insert(&mut self, scan: &Scan) {
@@ -79,25 +86,32 @@ impl BallClusterer {
             self.of_older_scan += scan.points.len() as u64;
             return;
         }
-        if order(&scan.header) > order(&self.header) {
+        let is_change = scan.header.scan == self.header.scan && scan.extent == Extent::Changes;
+        if order(&scan.header) > order(&self.header) && !is_change {
             self.reset();
             self.header = scan.header.derived();
         }
-        let stamp_nanos = self.header.stamp_nanos.max(scan.header.stamp_nanos);
-        self.header = Header { stamp_nanos, ..scan.header.derived() };
+        let (picture, revision) = (scan.header.stamp_nanos, scan.header.revision);
+        self.header = Header { stamp_nanos: self.header.stamp_nanos.max(picture), ..scan.header.derived() };
+        let outdated = self.state.pictures.outdated(picture, revision);
+        self.state.take_back(&outdated);
         if self.state.balls.is_empty()
             && let Some(first) = scan.points.first()
         {
             self.state = State::new(self.radius_m(scan, first));
         }
-        let picture = fold(scan.header.stamp_nanos);
+        let mut taken = Vec::with_capacity(scan.points.len());
         for point in scan.points.iter() {
-            match Sample::new(point, scan.region_sigma_m as f32, picture) {
+            match Sample::new(point, scan.region_sigma_m as f32, fold(picture)) {
                 None => self.not_finite += 1,
                 Some(sample) if !self.state.grid.reaches(sample.position_m) => self.out_of_range += 1,
-                Some(sample) => self.state.insert(sample),
+                Some(sample) => {
+                    self.state.insert(sample);
+                    taken.push(sample);
+                }
             }
         }
+        self.state.pictures.keep(picture, revision, taken);
     }
 
     /// D, for points whose poses are as well known as this one's.
@@ -112,8 +126,8 @@ impl BallClusterer {
     }
 
     /// The balls that changed since the last call and have enough points, by number; also a ball that was sent before and
-    /// has since lost so many points to a younger one that it is an outlier (its count says so). After a new scan or
-    /// revision began, the first of these is [`Extent::Whole`].
+    /// has since lost so many points that it is an outlier (then its count is 0). After a new scan or revision began, the
+    /// first of these is [`Extent::Whole`].
     pub fn changes(&mut self) -> Cloud {
         let mut ids = self.state.take_changed();
         ids.retain(|&id| {
@@ -180,6 +194,7 @@ impl State {
             balls: Vec::new(),
             grid: CentreGrid::new(radius_m),
             movable: MovablePoints::new(),
+            pictures: Pictures::default(),
             changed: Vec::new(),
             radius_m,
             steps_per_metre: steps_per_metre(radius_m),
@@ -201,7 +216,35 @@ impl State {
         if distance_squared > SETTLED * self.radius_m * self.radius_m {
             self.movable.push(&mut ball.movable, *sample);
         }
-        if !std::mem::replace(&mut ball.changed, true) {
+        self.mark(id);
+    }
+
+    /// Lets the points of one picture go.
+    fn take_back(&mut self, samples: &[Sample]) {
+        let Some(first) = samples.first() else { return };
+        let mut left: Vec<u32> = samples.iter().filter_map(|sample| self.let_go(sample)).collect();
+        left.sort_unstable();
+        left.dedup();
+        for id in left {
+            self.balls[id as usize].forget(first.picture());
+            self.mark(id);
+        }
+    }
+
+    /// Returns the ball that lost it: a point is always in the ball with the closest centre, of two the older one.
+    fn let_go(&mut self, sample: &Sample) -> Option<u32> {
+        let (id, squared) = self.grid.closest(sample.position_m)?;
+        let ball = &mut self.balls[id as usize];
+        ball.remove(sample, self.steps_per_metre);
+        if squared > SETTLED * self.radius_m * self.radius_m {
+            self.movable.take_one(&mut ball.movable, sample);
+        }
+        Some(id)
+    }
+
+    /// Notes that a ball has changed.
+    fn mark(&mut self, id: u32) {
+        if !std::mem::replace(&mut self.balls[id as usize].changed, true) {
             self.changed.push(id);
         }
     }
@@ -230,8 +273,8 @@ impl State {
         for sample in &taken {
             ball.remove(sample, self.steps_per_metre);
         }
-        if !taken.is_empty() && !std::mem::replace(&mut ball.changed, true) {
-            self.changed.push(from);
+        if !taken.is_empty() {
+            self.mark(from);
         }
         for sample in taken.drain(..) {
             self.assign(to, &sample, distance_squared(sample.position_m, centre));

@@ -16,12 +16,15 @@
 //! mean sigma, over the root of the number of pictures, and besides it what no number of pictures averages away
 //! ([`wire::Scan::region_sigma_m`]). Scans bring no colour, so there is none.
 //!
+//! Of a scan that is refined while it goes on, a picture may come again, better placed ([`wire::Scan::extent`]): it takes its own
+//! place, and all else stays.
+//!
 //! On request [`BallClusterer::whole`] leaves out the table on which the thing stands ([`geometry::Table`]), which the paper
 //! edited by hand, and tells where it is ([`wire::TablePlane`]): nothing of the thing is below it.
 //!
 //! **Units and frames**: metres, in the world. **Limits**: points beyond 2^20 D from the origin are refused (839 m for
-//! 0.8 mm). Memory: about 1 kB a ball on a surface, and 28 bytes for each point that a later ball might still take over
-//! (farther than D/2 from its centre: about half of them). **Speed**: one look into a hash a point.
+//! 0.8 mm). Memory: about 1 kB a ball on a surface, and 28 bytes for each point, twice for one that a later ball might
+//! still take over (farther than D/2 from its centre: about half of them). **Speed**: one look into a hash a point.
 //!
 //! ```
 //! use cluster::{BallClusterer, Config};
@@ -47,6 +50,7 @@ mod movable;
 #[cfg(feature = "node")]
 pub mod node;
 mod output;
+mod pictures;
 mod table;
 
 pub use clusterer::{BallClusterer, Held};

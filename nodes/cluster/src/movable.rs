@@ -65,6 +65,17 @@ impl MovablePoints {
         self.drop_empty_first(list);
     }
 
+    /// Takes out one point that is the same as this.
+    pub fn take_one(&mut self, list: &mut u32, sample: &Sample) {
+        let (mut found, mut taken) = (false, Vec::new());
+        let mut is_it = |held: &Sample| {
+            let it = !found && held == sample;
+            found |= it;
+            it
+        };
+        self.take(list, &mut is_it, &mut taken);
+    }
+
     /// How many bytes are held.
     pub fn bytes(&self) -> usize {
         self.blocks.capacity() * size_of::<Block>()

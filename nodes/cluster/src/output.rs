@@ -36,7 +36,7 @@ fn point(state: &State, id: u32, least_points: u32, near: &mut Vec<u32>) -> Clou
         normal: normal.map(|c| c as f32).into(),
         spread_m: spread_squared.sqrt() as f32,
         sigma_m: variance.sqrt() as f32,
-        count: ball.count,
+        count: if ball.count < least_points { 0 } else { ball.count },
         id,
         colour: [0; 4],
     }

@@ -128,7 +128,7 @@ proptest! {
             let known = kept.get(&point.id).expect("a ball that is good at the end was told of");
             prop_assert_eq!((known.position_m, known.count, known.sigma_m > 0.0), (point.position_m, point.count, true));
         }
-        let fallen = |p: &&CloudPoint| p.count < T;
+        let fallen = |p: &&CloudPoint| p.count == 0;
         let good: Vec<u32> = kept.values().filter(|p| !fallen(p)).map(|p| p.id).collect();
         prop_assert_eq!(good, whole.points.iter().map(|p| p.id).collect::<Vec<_>>());
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use wire::{Cloud, CloudPoint, Extent};
 
-/// The balls of one scan and revision, by their numbers.
+/// The balls of one scan as they stand, by their numbers.
 #[derive(Debug, Default)]
 pub(crate) struct HeldCloud {
     of: Option<(u64, u32)>,
@@ -17,11 +17,18 @@ impl HeldCloud {
         if of < self.of {
             return;
         }
-        if of > self.of || cloud.extent == Extent::Whole {
+        let is_later = self.of.is_some_and(|(scan, _)| cloud.header.scan > scan);
+        if is_later || cloud.extent == Extent::Whole {
             self.balls.clear();
         }
         self.of = of;
-        self.balls.extend(cloud.points.iter().map(|ball| (ball.id, *ball)));
+        for ball in cloud.points.iter() {
+            if ball.count > 0 {
+                self.balls.insert(ball.id, *ball);
+            } else {
+                self.balls.remove(&ball.id);
+            }
+        }
     }
 
     /// The same if they are of this scan; otherwise none.

@@ -59,9 +59,13 @@ fn painted(phase: Phase) -> Model {
 fn a_cloud_is_put_together_from_changes_and_written_at_the_end() {
     let (_folder, mut exporter) = exporter();
     assert!(exporter.cloud(&changes(Phase::Shape, 0, vec![ball(9, 9.0)])).unwrap().is_empty());
-    assert!(exporter.cloud(&changes(Phase::Shape, 1, vec![ball(2, 0.2), ball(1, 0.1)])).unwrap().is_empty());
+    let gone = CloudPoint { count: 0, ..ball(3, 0.3) };
+    let whole =
+        Cloud { extent: Extent::Whole, ..changes(Phase::Shape, 1, vec![ball(2, 0.2), ball(1, 0.1), ball(3, 0.3)]) };
+    assert!(exporter.cloud(&whole).unwrap().is_empty());
+    assert!(exporter.cloud(&changes(Phase::Shape, 2, vec![gone])).unwrap().is_empty());
     exporter.cloud(&changes(Phase::Shape, 0, vec![ball(8, 8.0)])).unwrap();
-    let written = exporter.cloud(&changes(Phase::End, 1, vec![ball(2, 0.3)])).unwrap();
+    let written = exporter.cloud(&changes(Phase::End, 2, vec![ball(2, 0.3)])).unwrap();
     assert_eq!(cloud::read(&written[0].path).unwrap(), [ball(1, 0.1), ball(2, 0.3)]);
     assert_eq!(
         (written[0].holds.as_str(), written[0].bytes),

@@ -49,8 +49,10 @@ pub struct Config {
     pub use_degraded: bool,
     /// While the scan goes on it is refined again after so long; 0 refines only at its end.
     pub live_every_s: f64,
-    /// A live revision has about so many points at most; the final one has all.
+    /// A live revision brings about so many points at most; the final one has all.
     pub live_points: usize,
+    /// A live revision brings a frame again when a point of it has moved by more than this since the frame was sent.
+    pub live_moved_mm: f64,
 }
 
 impl Default for Config {
@@ -77,6 +79,7 @@ impl Default for Config {
             use_degraded: true,
             live_every_s: 1.0,
             live_points: 100_000,
+            live_moved_mm: 0.5,
         }
     }
 }
@@ -114,6 +117,7 @@ impl Config {
             ("most_residual", self.most_residual, 1.5..=100.0, "1.5 to 100 medians"),
             ("live_every_s", self.live_every_s, 0.0..=3600.0, "0 to 3600 s"),
             ("live_points", self.live_points as f64, 1e3..=1e9, "1000 to 1000000000"),
+            ("live_moved_mm", self.live_moved_mm, 0.0..=100.0, "0 to 100 mm"),
             ("most_gap_ms", self.most_gap_ms, 1.0..=1e6, "1 ms to 1000 s"),
         ];
         match limits.into_iter().find(|(_, value, range, _)| !range.contains(value)) {

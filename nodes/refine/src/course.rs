@@ -1,35 +1,31 @@
-//! One scan on its way through the node: relayed as it comes, refined beside that, sent again when it is better.
+//! One scan on its way through the node: relayed as it comes, refined beside that, what of it stands better sent again.
 
+use crate::readers::{Outputs, Readers};
 use crate::worker::{Answer, Worker};
-use crate::{Config, Evidence, Refinement, sentence, tell};
+use crate::{Config, Evidence, Notice, sentence};
 use anyhow::Context as _;
-use kit::{Node, Output};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
-use wire::{Bulk, Calibration, Header, Phase, Scan, Trajectory};
-
-/// Where everything goes.
-pub(crate) struct Outputs {
-    pub scans: Output<Scan>,
-    pub ways: Output<Trajectory>,
-    pub accounts: Output<wire::Refinement>,
-}
+use kit::Node;
+use std::mem::Discriminant;
+use std::time::{Duration, Instant};
+use wire::{Calibration, Header, Scan, Trajectory};
 
 /// How far one scan has come.
 pub(crate) struct Course {
     config: Config,
     calibration: Calibration,
-    outputs: Outputs,
+    readers: Readers,
     pub worker: Worker,
     scan: u64,
-    revision: u32,
     /// What register made of it: the last resort, should nothing better come.
     placed: Vec<Scan>,
-    way: Vec<Trajectory>,
+    ways: Vec<Trajectory>,
     /// Of poses, profiles, scans and trajectories.
     pub ends: [Option<Header>; 4],
     ticking: bool,
     finishing: bool,
     told: Instant,
+    /// The live notices that the log has.
+    noticed: Vec<Discriminant<Notice>>,
 }
 
 impl Course {
@@ -38,15 +34,15 @@ impl Course {
             worker: Worker::start(&config, &calibration)?,
             config,
             calibration,
-            outputs,
+            readers: Readers::new(outputs),
             scan: 0,
-            revision: 0,
             placed: Vec::new(),
-            way: Vec::new(),
+            ways: Vec::new(),
             ends: [None; 4],
             ticking: false,
             finishing: false,
             told: Instant::now(),
+            noticed: Vec::new(),
         })
     }
 
@@ -54,10 +50,12 @@ impl Course {
     pub fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         if header.scan > self.scan {
             self.worker = Worker::start(&self.config, &self.calibration)?;
-            (self.scan, self.revision, self.ends) = (header.scan, 0, [None; 4]);
+            (self.scan, self.ends) = (header.scan, [None; 4]);
             (self.ticking, self.finishing, self.told) = (false, false, Instant::now());
+            self.readers.begin();
             self.placed.clear();
-            self.way.clear();
+            self.ways.clear();
+            self.noticed.clear();
         }
         Ok(())
     }
@@ -85,13 +83,13 @@ impl Course {
     }
 
     pub fn relay_scan(&mut self, node: &mut Node, scan: Scan) -> anyhow::Result<()> {
-        if scan.header.is_end() {
-            self.ends[2] = Some(scan.header);
+        let header = scan.header;
+        if header.is_end() {
+            self.ends[2] = Some(header);
             return Ok(());
         }
-        self.placed.push(scan.clone());
-        let header = Header { revision: self.revision, ..scan.header.derived() };
-        self.outputs.scans.send(Scan { header, ..scan })?;
+        self.readers.relay_scan(scan.clone())?;
+        self.placed.push(scan);
         node.finished(&header)
     }
 
@@ -100,9 +98,9 @@ impl Course {
             self.ends[3] = Some(way.header);
             return Ok(());
         }
-        self.way.push(way.clone());
-        let header = Header { revision: self.revision, ..way.header.derived() };
-        Ok(self.outputs.ways.send(Trajectory { header, ..way })?)
+        self.readers.relay_way(way.clone())?;
+        self.ways.push(way);
+        Ok(())
     }
 
     pub fn take(&mut self, node: &mut Node, answer: Answer) -> anyhow::Result<()> {
@@ -111,78 +109,44 @@ impl Course {
         match answer {
             Answer::Live(None) => Ok(()),
             Answer::Live(Some(refinement)) if !self.finishing => {
-                let points: usize = self.placed.iter().map(|scan| scan.points.len()).sum();
-                self.revise(node, &refinement, points.div_ceil(self.config.live_points.max(1)).max(1))
+                self.warn(&refinement.evidence);
+                self.readers.revise(node, &self.config, &refinement, &self.placed, &self.ways)
             }
             Answer::Live(Some(_)) => Ok(()),
             Answer::Final(outcome) => {
                 match outcome {
                     Ok(refinement) => {
                         say(node, &refinement.evidence);
-                        self.revise(node, &refinement, 1)?;
+                        self.readers.conclude(node, &refinement)?;
                     }
                     Err(error) => {
                         tracing::warn!("not refined, the scan stays as the tracker has it: {error}");
                         node.refuse("scan that cannot be refined", 1);
-                        self.repeat(node)?;
+                        let (placed, ways) = (std::mem::take(&mut self.placed), std::mem::take(&mut self.ways));
+                        self.readers.repeat(node, placed, ways)?;
                     }
                 }
-                self.end(node)
+                let end = self.ends[2].context("an end that nobody sent")?;
+                let header = self.readers.end(&end)?;
+                node.finished(&header)
             }
         }
     }
 
-    /// The next revision. It goes along with the seconds since the operator's word, so that this node, started again in
-    /// mid-scan, counts on behind what it sent before.
-    fn count_on(&mut self, node: &Node) {
-        let begun_nanos = node.phase().map_or(0, |phase| phase.header.stamp_nanos);
-        let now_nanos = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_nanos() as i64);
-        let seconds = ((now_nanos - begun_nanos) / 1_000_000_000).clamp(0, i64::from(u32::MAX >> 1)) as u32;
-        self.revision = seconds.max(self.revision + 1);
-    }
-
-    /// Sends the scan so far as the next revision, of each profile every `one_in`th point.
-    fn revise(&mut self, node: &Node, refinement: &Refinement, one_in: usize) -> anyhow::Result<()> {
-        self.count_on(node);
-        let Some(first) = self.placed.first().map(|scan| scan.header) else { return Ok(()) };
-        let header = Header { revision: self.revision, ..first.derived() };
-        let stamp_nanos = refinement.trajectory.last().map_or(first.stamp_nanos, |pose| pose.stamp_nanos);
-        let samples: Bulk<_> = refinement.trajectory.iter().map(wire::TrajectorySample::from).collect();
-        let header = Header { stamp_nanos, ..header };
-        self.outputs.ways.send(Trajectory { header, samples })?;
-        self.outputs.accounts.send(tell::message(&refinement.evidence, header))?;
-        for scan in refinement.scans() {
-            let header = Header { revision: self.revision, ..scan.header.derived() };
-            let points = scan.points.iter().step_by(one_in).copied().collect();
-            self.outputs.scans.send(Scan { header, points, ..scan })?;
+    /// Says what was noticed while there is still time to do something about it: each kind once.
+    fn warn(&mut self, evidence: &Evidence) {
+        for notice in &evidence.notices {
+            let kind = std::mem::discriminant(notice);
+            if self.noticed.contains(&kind) {
+                continue;
+            }
+            self.noticed.push(kind);
+            match notice {
+                // The next tick may do better.
+                Notice::StepTakenBack | Notice::KeptSmoothed => tracing::debug!("for now: {}", sentence(notice)),
+                _ => tracing::warn!("{}", sentence(notice)),
+            }
         }
-        Ok(())
-    }
-
-    /// Sends what register made of the scan, whole, after revisions that were not.
-    fn repeat(&mut self, node: &Node) -> anyhow::Result<()> {
-        if self.revision == 0 {
-            return Ok(());
-        }
-        self.count_on(node);
-        let revision = self.revision;
-        for way in std::mem::take(&mut self.way) {
-            let header = Header { revision, ..way.header.derived() };
-            self.outputs.ways.send(Trajectory { header, ..way })?;
-        }
-        for scan in std::mem::take(&mut self.placed) {
-            let header = Header { revision, ..scan.header.derived() };
-            self.outputs.scans.send(Scan { header, ..scan })?;
-        }
-        Ok(())
-    }
-
-    fn end(&mut self, node: &mut Node) -> anyhow::Result<()> {
-        let end = self.ends[2].context("an end that nobody sent")?;
-        let header = Header { revision: self.revision, phase: Phase::End, ..end.derived() };
-        self.outputs.ways.send(Trajectory { header, samples: Bulk::default() })?;
-        self.outputs.scans.send(Scan::none(header))?;
-        node.finished(&header)
     }
 }
 

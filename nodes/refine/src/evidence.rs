@@ -14,7 +14,7 @@ pub struct Evidence {
     pub clock: ClockEvidence,
     /// The camera on the handset.
     pub hand_eye: HandEyeEvidence,
-    /// What the scan could determine; `None` in live revisions.
+    /// What the scan could determine; `None` in live revisions until enough was seen.
     pub observed: Option<Observed>,
     /// What was noticed on the way, in the order of its weight.
     pub notices: Vec<Notice>,
@@ -34,6 +34,14 @@ pub struct Evidence {
     pub frames: Vec<FrameEvidence>,
 }
 
+impl Evidence {
+    /// The stamp of the last frame that it tells of, kept or left out.
+    pub fn last_frame_nanos(&self) -> Option<i64> {
+        let kept = self.frames.last().map(|frame| frame.stamp_nanos);
+        kept.max(self.dropped.last().map(|frame| frame.stamp_nanos))
+    }
+}
+
 /// 1.4826 times the median distance of points from the quadrics through their neighbourhoods.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Residual {
@@ -50,7 +58,7 @@ pub struct TrackerEvidence {
     pub white_position_mm: f64,
     /// White noise of a reading, about one axis.
     pub white_rotation_deg: f64,
-    /// How large the fast correction is beside what white noise allows; above 0.6 the noise is not white. `None` when the
+    /// How large the fast correction is beside what white noise allows; above 0.55 the noise is not white. `None` when the
     /// scan holds too little to tell.
     pub excess: Option<f64>,
     /// The tracker's readings were believed so many times less than their white noise allows.

@@ -93,6 +93,8 @@ mod posterior;
 mod precondition;
 mod prior;
 mod quadric;
+#[cfg(feature = "node")]
+mod readers;
 mod refinement;
 mod refiner;
 mod scene;
@@ -100,6 +102,7 @@ mod schedule;
 mod schur;
 mod seen_through;
 mod sentence;
+mod shown;
 mod solver;
 mod spline;
 mod step;
@@ -122,3 +125,4 @@ pub use evidence::{
 pub use refinement::Refinement;
 pub use refiner::{RefineError, Refiner};
 pub use sentence::sentence;
+pub use shown::Shown;

@@ -1,8 +1,9 @@
-//! The wiring. What `register` made of a scan is relayed as it comes, so that all behind this node is live; once in a while,
-//! and for good at the end, the whole scan goes again as the next revision, on a better way of the camera.
+//! The wiring. What `register` made of a scan is relayed as it comes, so that all behind this node is live. On a better way
+//! of the camera the next revision goes: once in a while what moved of the scan, and at its end all of it.
 
 use crate::Config;
-use crate::course::{Course, Outputs};
+use crate::course::Course;
+use crate::readers::Outputs;
 use kit::{Input, Node};
 use wire::{Pose, Profile, Scan, Trajectory, topic};
 

@@ -4,7 +4,7 @@ use crate::Evidence;
 use geometry::{TimedPose, rigid_to_wire};
 use nalgebra::Vector3;
 use std::sync::Arc;
-use wire::{Bulk, Header, ProfilePoint, Scan, ScanPoint};
+use wire::{Bulk, Extent, Header, ProfilePoint, Scan, ScanPoint};
 
 /// A refined scan, as far as it has come. It shares the points with the refiner, so it may go to another thread.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ impl Refinement {
 }
 
 impl RefinedFrame {
-    fn scan(&self) -> Scan {
+    pub(crate) fn scan(&self) -> Scan {
         let pose = &self.pose.pose;
         let rotation = pose.rotation.to_rotation_matrix().into_inner().cast::<f32>();
         let place = |point: &ProfilePoint| {
@@ -51,6 +51,7 @@ impl RefinedFrame {
         };
         Scan {
             header: self.header.derived(),
+            extent: Extent::Whole,
             world_from_camera: rigid_to_wire(pose),
             // The points' own sigmas hold what the pose's error does to the surface. Where the whole stands is another matter.
             position_sigma_m: 0.0,

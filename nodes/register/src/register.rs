@@ -6,7 +6,7 @@ use crate::{Config, ConfigError};
 use geometry::{NoPose, SmoothError, TimedPose, rigid_from_wire, rigid_to_wire};
 use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
-use wire::{Bulk, Calibration, Header, Phase, Pose, Profile, Refusal, Scan, Trajectory};
+use wire::{Bulk, Calibration, Extent, Header, Phase, Pose, Profile, Refusal, Scan, Trajectory};
 
 /// Why nothing can be registered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -241,6 +241,7 @@ impl Register {
         self.passed_over = None;
         self.registered.push_back(Scan {
             header: profile.header.derived(),
+            extent: Extent::Whole,
             world_from_camera: rigid_to_wire(&world_from_camera),
             position_sigma_m: body.position_sigma_m,
             rotation_sigma_rad: body.rotation_sigma_rad,

@@ -72,10 +72,17 @@ impl Model {
     pub fn replace(&mut self, place: u32, old: &Sample, new: &Sample) {
         let key = self.grid.key(&old.position);
         if key != self.grid.key(&new.position) {
-            if let Some(members) = self.members.get_mut(&key) {
-                members.retain(|&member| member != place);
-            }
+            self.remove(place, old);
             self.insert(place, new);
+        }
+        self.changed.insert(key);
+    }
+
+    /// Takes a sample out.
+    pub fn remove(&mut self, place: u32, sample: &Sample) {
+        let key = self.grid.key(&sample.position);
+        if let Some(members) = self.members.get_mut(&key) {
+            members.retain(|&member| member != place);
         }
         self.changed.insert(key);
     }

@@ -47,19 +47,23 @@ impl Surfer {
         })
     }
 
-    /// Takes in a cloud or its changes, and marks what they touch. A later scan or revision starts afresh; an earlier
-    /// one is refused.
+    /// Takes in a cloud or its changes, and marks what they touch. A later scan, and a whole cloud, start afresh; an earlier
+    /// scan or revision is refused.
     pub fn update(&mut self, cloud: &Cloud) {
         let standing = |header: &Header| (header.scan, header.revision);
         match standing(&cloud.header).cmp(&standing(&self.header)) {
             Ordering::Less => return self.refuse(Refused::Old, cloud.points.len() as u64),
-            Ordering::Greater => self.forget(),
-            Ordering::Equal if cloud.extent == Extent::Whole => self.forget(),
-            Ordering::Equal => {}
+            Ordering::Greater if cloud.header.scan > self.header.scan => self.forget(),
+            _ if cloud.extent == Extent::Whole => self.forget(),
+            _ => {}
         }
         self.header = cloud.header;
         self.table = cloud.table.or(self.table);
         for point in cloud.points.iter() {
+            if cloud.extent == Extent::Changes && point.count == 0 {
+                self.remove(point.id);
+                continue;
+            }
             match Sample::new(point.id, point.position_m, point.normal, point.sigma_m) {
                 Ok(sample) => self.put(sample),
                 Err(reason) => self.refuse(reason, 1),
@@ -140,6 +144,23 @@ impl Surfer {
         let old = std::mem::replace(&mut self.samples[place as usize], sample);
         if let (Some(model), true) = (&mut self.model, old != sample) {
             model.replace(place, &old, &sample);
+        }
+    }
+
+    /// A point is no longer part of the cloud.
+    fn remove(&mut self, id: u32) {
+        let Some(place) = self.places.remove(&id) else { return };
+        let gone = self.samples.swap_remove(place as usize);
+        let moved = self.samples.get(place as usize);
+        if let Some(model) = &mut self.model {
+            model.remove(place, &gone);
+            if let Some(last) = moved {
+                model.remove(self.samples.len() as u32, last);
+                model.insert(place, last);
+            }
+        }
+        if let Some(last) = moved {
+            self.places.insert(last.id, place);
         }
     }
 

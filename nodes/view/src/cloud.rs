@@ -29,7 +29,7 @@ impl ChunkedCloud {
             if id >= self.points.len() {
                 self.points.resize(id + 1, None);
             }
-            self.points[id] = Some(*point);
+            self.points[id] = Some(*point).filter(|point| point.count > 0);
             self.changed.insert(id / CHUNK);
         }
     }

@@ -172,6 +172,11 @@ fn of_the_cloud_only_what_changed_is_sent_again() {
     let sizes: Vec<(usize, usize)> = held.changes().iter().map(|(number, balls)| (*number, balls.len())).collect();
     assert_eq!(sizes, [(1, 11)]);
     assert!(held.changes().is_empty());
+    // Of a ball that lost its points nothing is left.
+    let mut gone = cloud(Extent::Changes, 3..4);
+    gone.points[0].count = 0;
+    held.take(&gone);
+    assert_eq!(held.changes()[0].1.len(), CHUNK - 1);
     // A number out of the blue allocates nothing; what is gone from the whole is gone from the page.
     held.take(&cloud(Extent::Changes, u32::MAX - 1..u32::MAX));
     assert!(held.changes().is_empty());

@@ -128,6 +128,7 @@ impl Sample for Scan {
             ScanPoint { position_m: [0.1, 0.2, 0.3], to_sensor: [0.0, 0.0, 1.0], sigma_m: 1e-4, amplitude: 90.0 };
         Scan {
             header: header(),
+            extent: Extent::Changes,
             world_from_camera: pose(),
             position_sigma_m: 1e-3,
             rotation_sigma_rad: 0.05,

@@ -10,7 +10,7 @@ use geometry::{
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use refine::{Config, Refiner};
-use wire::{Calibration, Header, Phase, Pose, Profile, ProfilePoint, Scan, ScanPoint};
+use wire::{Calibration, Extent, Header, Phase, Pose, Profile, ProfilePoint, Scan, ScanPoint};
 use world::{Hand, Scene, Tracker};
 
 pub mod measure;
@@ -204,6 +204,7 @@ impl Sweep {
             };
             Some(Scan {
                 header: profile.header,
+                extent: Extent::Whole,
                 world_from_camera: rigid_to_wire(&world_from_camera),
                 position_sigma_m: 0.0,
                 rotation_sigma_rad: 0.0,

@@ -135,11 +135,39 @@ fn live_changes_reach_the_mesh() {
 }
 
 #[test]
+fn points_that_are_gone_leave_no_trace() {
+    let (points, normals) = some_sphere(20_000);
+    let mut surfer = Surfer::new(Config::default()).unwrap();
+    let whole = cloud(&points, &normals, Extent::Whole);
+    surfer.update(&whole);
+    surfer.live_mesh();
+    // A second sheet that was seen by mistake, and is taken back in the next revision.
+    let next = Header { revision: 1, ..whole.header };
+    let mut wrong = Cloud { header: next, extent: Extent::Changes, ..whole.clone() };
+    wrong.points.retain(|p| p.position_m[2] > 0.01);
+    for point in wrong.points.iter_mut() {
+        (point.position_m, point.id) = (point.position_m.map(|x| x * 1.3), point.id + 100_000);
+    }
+    surfer.update(&wrong);
+    let held = surfer.samples();
+    assert_eq!(held, points.len() + wrong.points.len(), "what changed is beside what there was");
+    assert!(surfer.live_mesh().vertices_m.iter().any(|p| p[2] > 0.024));
+    wrong.points.iter_mut().for_each(|point| point.count = 0);
+    surfer.update(&wrong);
+    surfer.update(&wrong);
+    assert_eq!(surfer.samples(), points.len());
+    assert!(surfer.live_mesh().vertices_m.iter().all(|p| p[2] < 0.021));
+    let mut clean = Surfer::new(Config::default()).unwrap();
+    clean.update(&whole);
+    assert_eq!(surfer.final_mesh().triangles, clean.final_mesh().triangles);
+}
+
+#[test]
 fn a_new_revision_starts_afresh_and_an_old_one_is_refused() {
     let (points, normals) = some_sphere(10_000);
     let of = |points: &Points, scan, revision| Cloud {
         header: Header { scan, revision, ..Header::default() },
-        ..cloud(&points.0, &points.1, Extent::Changes)
+        ..cloud(&points.0, &points.1, Extent::Whole)
     };
     let southern = without(&(points.clone(), normals.clone()), |p| p[2] > 0.0);
     let mut surfer = Surfer::new(Config::default()).unwrap();
