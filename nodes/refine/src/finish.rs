@@ -24,7 +24,7 @@ use nalgebra::Isometry3;
 
 /// Stripes must cross on this share of the surface before the hand-eye transform is freed. (A hand that only goes around the
 /// thing rolls a little all the same: 0.5. One that crosses its strokes: 0.75 and more.)
-const CROSSING: f64 = 0.6;
+pub(crate) const CROSSING: f64 = 0.6;
 /// Less of the memberships seen by other strokes is nothing.
 const SEEN_TWICE: f64 = 0.05;
 /// The hand-eye correction may leave what is believed by so many standard deviations.

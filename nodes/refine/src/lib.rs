@@ -26,7 +26,7 @@
 //!
 //! The hand-eye transform is freed only where stripes cross. Noise that is not white shows by corrections larger than the
 //! prior allows (`guard::coloured`); then all begins again with a prior that believes the readings less. Frames that fit nowhere, or that
-//! nothing holds, are dropped and told. A step that makes things worse is taken back; a refinement that fits no better
+//! nothing holds, are dropped and told; a stroke that is missing is named while the hand still moves. A step that makes things worse is taken back; a refinement that fits no better
 //! than the smoothed tracker is not given out, the smoothed one is. A thing that was moved is noticed, with the moment. What is noticed
 //! stands in [`Evidence::notices`].
 //!
@@ -114,6 +114,7 @@ mod tell;
 mod testimony;
 mod tracker;
 mod unknowns;
+mod watch;
 #[cfg(feature = "node")]
 mod worker;
 

@@ -19,6 +19,7 @@ use crate::step::{StepPlan, step};
 use crate::testimony::{clock, hand_eye_held, refused, tracker};
 use crate::tracker::Smoothed;
 use crate::unknowns::{BIAS, Free, GLOBALS, SPLINES, Unknowns};
+use crate::watch::Watch;
 use geometry::{Smoothing, word};
 use nalgebra::{Isometry3, Vector3};
 
@@ -32,6 +33,7 @@ pub(crate) struct Live {
     scale_m: [Option<f64>; LIVE.len()],
     /// The middle of the first tick: the field's polynomial stays centred there.
     origin: Option<Vector3<f64>>,
+    watch: Watch,
 }
 
 /// Before so much time, strokes have hardly met.
@@ -67,16 +69,21 @@ pub(crate) fn tick(
     let before = judge(&problem, &problem.poses(&zeros), &plan);
     let after = judge(&problem, &problem.poses(&x), &plan);
     let better = after.sigma_m <= before.sigma_m;
-    let notices = [(!better, Notice::KeptSmoothed), (taken_back, Notice::StepTakenBack)];
-    let notices = notices.into_iter().filter(|(noticed, _)| *noticed).map(|(_, notice)| notice).collect();
     let (used, judged) = if better { (&x, &after) } else { (&zeros, &before) };
+    let t_s = frames.last()?.t_s;
+    if live.watch.is_due(t_s) {
+        live.watch.look(t_s, &problem, &problem.poses(used), &judged.seen.patches);
+    }
+    let notices = [(!better, Notice::KeptSmoothed), (taken_back, Notice::StepTakenBack)];
+    let notices = notices.into_iter().filter(|(noticed, _)| *noticed).map(|(_, notice)| notice);
+    let notices = live.watch.advice().into_iter().chain(notices).collect();
     let out = outcome(config, &problem, &prior, judged, &[], used);
     let evidence = Evidence {
         residual: Residual { before_mm: before.sigma_m * 1e3, after_mm: judged.sigma_m * 1e3 },
         tracker: tracker(&smoothed, None, noise),
         clock: clock(&problem, used, [f64::NAN; 2]),
         hand_eye: hand_eye_held(config),
-        observed: None,
+        observed: live.watch.observed(),
         notices,
         frames_kept: out.frames.len(),
         dropped: out.dropped,

@@ -45,7 +45,7 @@ pub(crate) fn missing_stroke(strokes: &Strokes) -> Notice {
 }
 
 /// What a surface without shape leaves open.
-fn holds_little(hold: Hold) -> Notice {
+pub(crate) fn holds_little(hold: Hold) -> Notice {
     let advice = match hold.directions {
         0 => "no piece of surface was seen often enough".to_owned(),
         1..=3 => "the surface is a plane or a sphere, along which every stroke may slide: put something with edges beside it"

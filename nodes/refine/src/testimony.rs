@@ -1,8 +1,9 @@
 //! What the unknowns that all frames share came to, and how well they are known.
 
 use crate::Config;
-use crate::evidence::{ClockEvidence, HandEyeEvidence, RefusedInput, TrackerEvidence};
+use crate::evidence::{ClockEvidence, HandEyeEvidence, Observed, RefusedInput, TrackerEvidence};
 use crate::gather::Gathered;
+use crate::guard::strokes::{Hold, Strokes};
 use crate::prior::Prior;
 use crate::scene::Problem;
 use crate::solver::Noise;
@@ -81,6 +82,11 @@ pub(crate) fn tracker(smoothed: &Smoothed, excess: Option<f64>, noise: Noise) ->
         excess,
         inflation: noise.inflation,
     }
+}
+
+/// What the scan determines.
+pub(crate) fn observed(strokes: &Strokes, hold: Hold) -> Observed {
+    Observed { crossing: strokes.crossing, stripes_along: strokes.along.into(), held_directions: hold.directions }
 }
 
 /// What was refused on the way in.

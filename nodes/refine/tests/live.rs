@@ -1,11 +1,11 @@
-//! What goes out while a scan goes on: what changed.
+//! What goes out while a scan goes on: what changed, and what the hand should still do.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod swept;
 
 use nalgebra::Point3;
-use refine::{Config, Refinement, Refiner, Shown};
+use refine::{Config, Notice, Refinement, Refiner, Shown};
 use std::collections::BTreeMap;
 use swept::{Spec, Sweep};
 use wire::Scan;
@@ -90,4 +90,37 @@ fn a_frame_behind_the_refinement_stays_until_it_is_refined() {
         }
     });
     assert!(late.is_some());
+}
+
+/// The moments at which the hand is told to cross its strokes.
+fn told(sweep: &Sweep) -> Vec<i64> {
+    let mut told = Vec::new();
+    ticks(sweep, |second, refinement| {
+        let crosses = |notice: &Notice| matches!(notice, Notice::StrokesDoNotCross { .. });
+        let observed = refinement.evidence.observed.map(|observed| observed.crossing);
+        println!("{second} s: {observed:?} {:?}", refinement.evidence.notices);
+        assert!(second < 7 || observed.is_some());
+        told.extend(refinement.evidence.notices.iter().any(crosses).then_some(second));
+    });
+    told
+}
+
+#[test]
+fn a_missing_stroke_is_named_while_the_hand_still_moves() {
+    let scene = format!("{}/../../config/scenes/one_way.toml", env!("CARGO_MANIFEST_DIR"));
+    let scene = Box::leak(std::fs::read_to_string(scene).unwrap().into_boxed_str());
+    for tracker in ["P", "C"] {
+        let sweep = Sweep::new(&Spec { seconds: 40.0, rays: 100, scene, ..Spec::named(tracker, 1) });
+        let told = told(&sweep);
+        assert!(told.first().is_some_and(|first| *first >= 10), "{tracker}: {told:?}");
+    }
+}
+
+#[test]
+fn a_hand_that_crosses_its_strokes_is_told_nothing() {
+    for (tracker, seed) in [("P", 1), ("P", 2), ("C", 3)] {
+        let sweep = Sweep::new(&Spec { seconds: 34.0, rays: 100, ..Spec::named(tracker, seed) });
+        let told = told(&sweep);
+        assert!(told.is_empty(), "{tracker} {seed}: {told:?}");
+    }
 }
