@@ -2,7 +2,7 @@
 //!
 //! All frames stay free (a window of free frames on a frozen map drifts along a stroke and bakes its error in). What was
 //! found by the tick before is where the next begins; new time begins at the smoothed tracker. Points and surfels are
-//! bounded, so that a tick's time hardly grows with the scan.
+//! bounded; the smoothing, the unknowns of the frames and their sigmas are not, and grow with the scan.
 
 use crate::Config;
 use crate::evidence::{Evidence, Notice, Residual};

@@ -69,8 +69,8 @@ impl Refiner {
     }
 
     /// One live step on everything that has come; `None` while it is less than two seconds. Never worse than the smoothed
-    /// tracker, as far as the points themselves can tell. The time it takes is bounded by the surface, not by the scan's
-    /// length, but for smoothing and placing, which grow slowly.
+    /// tracker, as far as the points themselves can tell. Of the time it takes, what the surfels cost is bounded by the
+    /// surface; what smoothing and the frames' own unknowns cost grows with the scan's length.
     pub fn tick(&mut self) -> Option<Refinement> {
         live::tick(&self.config, &self.gathered, self.body_from_camera, &mut self.live)
     }
