@@ -5,6 +5,7 @@
 use formats::scan_folder::ScanFolder;
 use nalgebra::{Matrix3, Point3, Vector3};
 use register::{Config, Register};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use stripe::StripeDetector;
 use triangulate::Triangulator;
@@ -14,7 +15,8 @@ use wire::{Pose, Scan};
 fn folder() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/etna");
     if !folder.join("rig.toml").is_file() {
-        println!("skipped: there is no {}", folder.display());
+        // Past the test harness, which keeps to itself what a green test prints.
+        let _ = writeln!(std::io::stderr(), "SKIPPED: there is no {}", folder.display());
         return None;
     }
     Some(folder)
