@@ -56,6 +56,10 @@ pub struct Config {
     pub settle_turn_degrees: f64,
     /// Pictures that wait for the final mesh take at most this many MiB of memory.
     pub memory_mib: usize,
+    /// Seconds between two coloured live surfaces, at least: coarse ones, for the eye. 0: none.
+    pub live_every_s: f64,
+    /// So many pictures, spread over the scan so far, colour a live surface.
+    pub live_pictures: usize,
 }
 
 impl Default for Config {
@@ -82,6 +86,8 @@ impl Default for Config {
             settle_shift_mm: 0.7,
             settle_turn_degrees: 0.4,
             memory_mib: 512,
+            live_every_s: 3.0,
+            live_pictures: 40,
         }
     }
 }
@@ -130,7 +136,9 @@ impl Config {
         within("blur_passes", self.blur_passes as f64, 0.0, 8.0, "0 to 8 passes")?;
         within("settle_shift_mm", self.settle_shift_mm, 1e-3, 100.0, "0.001 to 100 mm")?;
         within("settle_turn_degrees", self.settle_turn_degrees, 1e-3, 10.0, "0.001 to 10 degrees")?;
-        within("memory_mib", self.memory_mib as f64, 1.0, 1e6, "1 to 1000000 MiB")
+        within("memory_mib", self.memory_mib as f64, 1.0, 1e6, "1 to 1000000 MiB")?;
+        within("live_every_s", self.live_every_s, 0.0, 3600.0, "0 to 3600 s")?;
+        within("live_pictures", self.live_pictures as f64, 1.0, 1e4, "1 to 10000 pictures")
     }
 
     /// Edge of one cell, in metres.

@@ -82,6 +82,8 @@ pub mod node;
 mod occlusion;
 mod painter;
 mod picture;
+#[cfg(feature = "node")]
+mod preview;
 mod region;
 mod sample;
 mod settle;

@@ -1,5 +1,7 @@
-//! The wiring: lamp-lit frames are kept until the surface is final, and then painted onto it.
+//! The wiring: lamp-lit frames are kept until the surface is final, and then painted onto it; a live surface gets some of
+//! them.
 
+use crate::preview::Preview;
 use crate::{Config, FrameStore, Painter, Shot};
 use geometry::TrajectoryBuffer;
 use kit::{GATHERED_HISTORY, Input, Node, STREAM_HISTORY};
@@ -22,6 +24,8 @@ struct Scan {
     /// Of the way.
     revision: u32,
     mesh: Option<Mesh>,
+    /// It came since the last preview.
+    mesh_is_new: bool,
     frames_ended: bool,
     way_ended: bool,
 }
@@ -29,7 +33,7 @@ struct Scan {
 impl Scan {
     fn new(header: Header, bound_bytes: usize) -> Self {
         let (store, way) = (FrameStore::new(bound_bytes), TrajectoryBuffer::default());
-        Self { header, store, way, revision: 0, mesh: None, frames_ended: false, way_ended: false }
+        Self { header, store, way, revision: 0, mesh: None, mesh_is_new: false, frames_ended: false, way_ended: false }
     }
 }
 
@@ -53,6 +57,7 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
     let mut models = node.output(&topic::textured())?;
     let rig = node.spec().source_of("rig").to_owned();
     let calibration = node.calibration(&rig)?;
+    let mut preview = Preview::new(&config, &calibration)?;
     let mut painter = Painter::new(config, &calibration)?;
     node.ready()?;
     let mut scan = Scan::new(Header::default(), bound_bytes);
@@ -65,6 +70,10 @@ pub fn run(mut node: Node) -> anyhow::Result<()> {
             models.send(Model { header, ..model })?;
             node.finished(&header)?;
             scan = Scan::new(Header { scan: scan.header.scan, ..Header::default() }, bound_bytes);
+        } else if !is_final && scan.mesh_is_new && preview.is_due() {
+            scan.mesh_is_new = false;
+            let live = scan.mesh.as_ref().and_then(|mesh| preview.paint(mesh, &scan.store, &scan.way, GAP_NANOS));
+            live.map(|model| models.send(model)).transpose()?;
         }
     }
     node.close()
@@ -111,7 +120,7 @@ fn take(
     }
     while let Some(mesh) = inputs.meshes.next() {
         renew(scan, &mesh.header, bound_bytes);
-        scan.mesh = Some(mesh);
+        (scan.mesh, scan.mesh_is_new) = (Some(mesh), true);
     }
     Ok(())
 }
