@@ -42,6 +42,26 @@ fn a_stuck_viewer_slows_nobody() {
 }
 
 #[test]
+fn colour_comes_on_while_the_hand_still_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut up = short_up(folder.path());
+    for set in ["run.pace=real", "surface.live_every_s=0.2", "paint.live_every_s=0.2"] {
+        up.args(["--set", set]);
+    }
+    let mut rig = Rig::start(&mut up);
+    let bus = rig.bus();
+    let mut models = bus.subscribe(&topic::textured(), 256).unwrap();
+    let live = wait_on(&bus, "no surface is painted before the end", || models.next());
+    assert!(!live.header.is_end() && live.header.scan == 1, "{:?}", live.header);
+    assert!(live.texture.iter().any(|texel| texel[3] == 255), "no cell of it was seen");
+    let last = wait_on(&bus, "no model at the end", || models.next().filter(|model| model.header.is_end()));
+    assert!(last.texture.len() > live.texture.len(), "{} {}", last.texture.len(), live.texture.len());
+    drop((models, bus));
+    let (status, said) = rig.end();
+    assert!(status.success(), "{said}");
+}
+
+#[test]
 fn who_comes_late_gets_calibration_surface_and_model() {
     let folder = tempfile::tempdir().unwrap();
     let mut rig = Rig::start(short_up(folder.path()).args(["--set", "run.once=false"]));
