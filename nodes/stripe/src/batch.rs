@@ -12,6 +12,9 @@ use wire::{Frame, PeaksPer};
 /// Around a stretch that stands out; enough for lines up to about 2 px wide, wider ones are read again.
 const REACH_PX: usize = 14;
 
+/// So many runs are measured together.
+pub(crate) const RUNS: usize = 32;
+
 /// The second pass over one picture.
 pub(crate) struct Measuring<'a> {
     pub config: &'a Config,

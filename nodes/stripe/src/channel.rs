@@ -135,19 +135,31 @@ impl LaserChannel {
     }
 }
 
+/// A row's levels, to be compiled for each kind of vectors. (A struct: a closure would be compiled once, for the least.)
+struct Fill<'a> {
+    levels: &'a Levels,
+    row: &'a [u8],
+    out: &'a mut [u8],
+}
+
+impl pulp::NullaryFnOnce for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        match self.levels.format {
+            PixelFormat::Rgb8 => self.levels.fill_rgb(self.row, self.out),
+            _ => self.levels.fill_yuyv(self.row, self.out),
+        }
+    }
+}
+
 impl Levels {
     /// The levels of one row of a checked frame. Plain loops over fixed strides, which the compiler makes into vectors.
     pub(crate) fn fill(&self, arch: pulp::Arch, row: &[u8], out: &mut [u8]) {
         match self.format {
             PixelFormat::Grey8 => out.copy_from_slice(&row[..out.len()]),
-            PixelFormat::Rgb8 => arch.dispatch(
-                #[inline(always)]
-                || self.fill_rgb(row, out),
-            ),
-            PixelFormat::Yuyv | PixelFormat::YuyvFull => arch.dispatch(
-                #[inline(always)]
-                || self.fill_yuyv(row, out),
-            ),
+            _ => arch.dispatch(Fill { levels: self, row, out }),
         }
     }
 

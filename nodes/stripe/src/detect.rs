@@ -1,9 +1,10 @@
 //! A picture in, its stripe out.
 
-use crate::batch::{Measure, Measuring};
+use crate::batch::{Measure, Measuring, RUNS};
 use crate::channel::LaserChannel;
 use crate::choice::Choice;
 use crate::lateral::{Averaging, Lateral, LinePeak};
+use crate::lonely::Lonely;
 use crate::measure::Candidate;
 use crate::refusal::Refusals;
 use crate::search::Search;
@@ -20,6 +21,7 @@ pub struct StripeDetector {
     channel: LaserChannel,
     peaks_per: PeaksPer,
     search: Search,
+    lonely: Lonely,
     row: Vec<u8>,
     candidates: Vec<Candidate>,
     peaks: Vec<LinePeak>,
@@ -38,6 +40,7 @@ impl StripeDetector {
             channel: LaserChannel::new(laser.channel_weights, config.saturation_level)?,
             peaks_per: laser.peaks_per,
             search: Search::new(config.max_width_px),
+            lonely: Lonely::default(),
             row: Vec::new(),
             candidates: Vec::new(),
             peaks: Vec::new(),
@@ -85,6 +88,12 @@ impl StripeDetector {
         let sigma = (noise_levels / levels.per_grey).max(self.config.noise_floor);
         let height = self.config.min_amplitude.max(self.config.min_noise_ratio * sigma);
         let threshold = (height * levels.per_grey).clamp(1.0, 254.0) as u8;
+        self.search.run(frame, &levels, self.peaks_per, threshold);
+        let size = match self.peaks_per {
+            PeaksPer::Row => [frame.height, frame.width],
+            PeaksPer::Column => [frame.width, frame.height],
+        };
+        self.lonely.refuse(&mut self.search.runs, size, &self.config, refusals);
         let mut measuring = Measuring {
             config: &self.config,
             channel: &self.channel,
@@ -96,10 +105,9 @@ impl StripeDetector {
             refusals,
             taken_to: (0, f32::NEG_INFINITY),
         };
-        let arch = self.search.arch;
-        self.search.run(frame, &levels, self.peaks_per, threshold, |runs| {
-            arch.dispatch(Measure { measuring: &mut measuring, runs });
-        });
+        for runs in self.search.runs.chunks(RUNS) {
+            self.search.arch.dispatch(Measure { measuring: &mut measuring, runs });
+        }
     }
 
     fn to_wire(&self, found: &LinePeak) -> StripePeak {

@@ -62,6 +62,7 @@ mod detect;
 mod flanks;
 mod gaussian;
 mod lateral;
+mod lonely;
 mod measure;
 mod noise;
 mod refusal;

@@ -6,8 +6,6 @@ use wire::{Frame, PeaksPer};
 
 /// Pixels that are passed over together where none is lit.
 const BLOCK: usize = 64;
-/// So many runs, or a few more, are handed over together: their bytes are still in the caches.
-const RUNS: usize = 32;
 /// Rows that are converted in one go (row by row, between comparisons, the memory cannot be read ahead).
 const BATCH: usize = 16;
 /// Lit stretches of one line that are closer belong together.
@@ -34,8 +32,8 @@ pub(crate) struct Search {
     excess: Vec<u8>,
     /// Which run of a column was the last (peaks per column).
     last_run: Vec<u32>,
-    /// What is not handed over yet, by line and along each line in the end.
-    runs: Vec<Run>,
+    /// What was found, by line and along each line.
+    pub runs: Vec<Run>,
 }
 
 impl Search {
@@ -54,25 +52,18 @@ impl Search {
         }
     }
 
-    /// Hands over all that rises more than `threshold` levels above both sides, by line and along each line.
-    pub(crate) fn run(
-        &mut self,
-        frame: &Frame,
-        levels: &Levels,
-        peaks_per: PeaksPer,
-        threshold: u8,
-        found: impl FnMut(&[Run]),
-    ) {
+    /// Fills `runs` with all that rises more than `threshold` levels above both sides.
+    pub(crate) fn run(&mut self, frame: &Frame, levels: &Levels, peaks_per: PeaksPer, threshold: u8) {
         self.runs.clear();
         self.excess.clear();
         self.excess.resize((frame.width as usize).next_multiple_of(BLOCK), 0);
         match peaks_per {
-            PeaksPer::Row => self.rows(frame, levels, threshold, found),
-            PeaksPer::Column => self.columns(frame, levels, threshold, found),
+            PeaksPer::Row => self.rows(frame, levels, threshold),
+            PeaksPer::Column => self.columns(frame, levels, threshold),
         }
     }
 
-    fn rows(&mut self, frame: &Frame, levels: &Levels, threshold: u8, mut found: impl FnMut(&[Run])) {
+    fn rows(&mut self, frame: &Frame, levels: &Levels, threshold: u8) {
         let [near, far] = self.reach;
         let (width, stride) = (frame.width as usize, frame.stride as usize);
         self.levels.clear();
@@ -89,16 +80,11 @@ impl Search {
                 Some(run) if run.line == v as u32 && u <= run.last + JOIN_PX => run.last = u,
                 _ => self.runs.push(Run { line: v as u32, first: u, last: u }),
             });
-            if self.runs.len() >= RUNS {
-                found(&self.runs);
-                self.runs.clear();
-            }
         }
-        found(&self.runs);
     }
 
     /// Down the picture row by row, as it lies in memory: a ring holds the rows that a pixel is compared with.
-    fn columns(&mut self, frame: &Frame, levels: &Levels, threshold: u8, found: impl FnMut(&[Run])) {
+    fn columns(&mut self, frame: &Frame, levels: &Levels, threshold: u8) {
         const NONE: u32 = u32::MAX;
         let [near, far] = self.reach;
         let (width, height, stride) = (frame.width as usize, frame.height as usize, frame.stride as usize);
@@ -136,7 +122,6 @@ impl Search {
             });
         }
         self.runs.sort_unstable();
-        self.runs.chunks(RUNS).for_each(found);
     }
 }
 

@@ -3,14 +3,15 @@
 use crate::lateral::LinePeak;
 
 /// So many lines (rows or columns) before and after a peak are asked.
-const REACH: i64 = 4;
+pub(crate) const REACH: usize = 4;
 
 /// For each peak, in how many of the lines around it another one lies where a stripe that steps aside by no more than
 /// `link_px` a line could have left it. `peaks` are sorted by line and position.
 pub(crate) fn count(peaks: &[LinePeak], link_px: f32, support: &mut Vec<u8>) {
     support.clear();
     support.resize(peaks.len(), 0);
-    for apart in (-REACH..=REACH).filter(|apart| *apart != 0) {
+    let reach = REACH as i64;
+    for apart in (-reach..=reach).filter(|apart| *apart != 0) {
         let gap = link_px * apart.abs() as f32;
         // The first that is not before the place asked about; both only go forwards.
         let mut near = 0;
