@@ -81,7 +81,7 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
     show::calibration(rec, &calibration, shrunk_by)?;
 
     let (mut pictures, mut surfaces) = (Rate::new(config.pictures_per_s), Rate::new(config.surfaces_per_s));
-    let (mut cloud, mut trail, mut painted) = (ChunkedCloud::default(), Vec::new(), false);
+    let (mut cloud, mut trail, mut painted, mut coloured_scan) = (ChunkedCloud::default(), Vec::new(), false, None);
     let (mut ways, mut plotted) = (Ways::default(), Plotted::default());
     let mut reports: BTreeMap<String, (Instant, Health)> = BTreeMap::new();
     while node.wait() {
@@ -102,11 +102,16 @@ pub fn run(mut node: Node, config: Config) -> anyhow::Result<()> {
         if !painted && surfaces.admits() {
             show::cloud(rec, &mut cloud)?;
             if let Some(mesh) = inputs.meshes.newest() {
-                show::mesh(rec, &mesh)?;
+                // Once it has colours, the next ones follow each surface shortly.
+                if coloured_scan != Some(mesh.header.scan) {
+                    show::bare(rec, &mesh)?;
+                }
+                show::bounds(rec, &mesh)?;
             }
         }
         if let Some(model) = inputs.models.newest() {
             show::model(rec, &model)?;
+            coloured_scan = Some(model.header.scan);
             painted = model.header.is_end();
         }
         while let Some(report) = inputs.healths.next() {

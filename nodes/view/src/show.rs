@@ -101,12 +101,18 @@ fn by_count(count: u32) -> [u8; 3] {
     [(230.0 - 150.0 * often) as u8, (120.0 + 80.0 * often) as u8, 70]
 }
 
-pub(crate) fn mesh(rec: &RecordingStream, mesh: &Mesh) -> Result {
+/// A surface without colours yet.
+pub(crate) fn bare(rec: &RecordingStream, mesh: &Mesh) -> Result {
     let shape = Mesh3D::new(mesh.vertices_m.iter().copied())
         .with_vertex_normals(mesh.normals.iter().copied())
         .with_triangle_indices(mesh.triangles.iter().copied())
         .with_albedo_factor(CLAY);
-    rec.log("world/surface", &shape)?;
+    rec.log("world/surface", &rerun::Clear::flat())?;
+    rec.log("world/bare", &shape)
+}
+
+/// How large it is.
+pub(crate) fn bounds(rec: &RecordingStream, mesh: &Mesh) -> Result {
     let Some([low, high]) = geometry::TriangleMesh::from(mesh).bounds() else { return Ok(()) };
     let half = (high - low) * 0.5;
     let box_around =
@@ -123,6 +129,7 @@ pub(crate) fn mesh(rec: &RecordingStream, mesh: &Mesh) -> Result {
     )
 }
 
+/// A surface with its colours: so far, or in the end, when the points have had their say.
 pub(crate) fn model(rec: &RecordingStream, model: &Model) -> Result {
     let rgb: Vec<u8> = model.texture.iter().flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
     let painted = Mesh3D::new(model.mesh.vertices_m.iter().copied())
@@ -132,7 +139,11 @@ pub(crate) fn model(rec: &RecordingStream, model: &Model) -> Result {
         .with_albedo_texture_format(ImageFormat::rgb8([model.texture_width, model.texture_height]))
         .with_albedo_texture_buffer(rgb);
     rec.log("world/surface", &painted)?;
-    rec.log("world/cloud", &rerun::Clear::recursive())
+    rec.log("world/bare", &rerun::Clear::flat())?;
+    if model.header.is_end() {
+        rec.log("world/cloud", &rerun::Clear::recursive())?;
+    }
+    Ok(())
 }
 
 /// Rates from the counts of two reports.
