@@ -1,13 +1,15 @@
-//! Keeps everything that reached the bus, in an MCAP file (<https://mcap.dev>), which any MCAP tool can open.
+//! Keeps what a scan is made of, in an MCAP file (<https://mcap.dev>), which any MCAP tool can open: poses, stripes, pictures
+//! for colour, calibration and the operator's phases; pictures of the laser's line, which are most of the bytes and have
+//! become stripes already, when `pictures = "all"`.
 //!
 //! | in | out |
 //! |---|---|
-//! | every message: key, schema, stamp, bytes | one file: a channel for each key and schema, the bytes as they came |
+//! | each of those messages: key, schema, stamp, bytes | one file: a channel for each key and schema, the bytes as they came |
 //!
 //! Nothing is decoded or encoded again, so a recording is exactly what the nodes heard. A channel's schema is named as it
 //! travels beside the message (`Frame@1:…`), and its data is the layout in words ([`wire::catalogue`]), so that a recording
 //! can be understood without this program. `log_time` is the stamp of the message (MCAP knows no time before zero: an
-//! earlier stamp stands as 0; the bytes keep it). Configuration, version and calibration go into the metadata record `limn`.
+//! earlier stamp stands as 0; the bytes keep it). Configuration and version go into the metadata record `limn`.
 //!
 //! A file grows by whole chunks, each written at once when it is large enough or holds enough time ([`Config`]); after a
 //! crash all but the last chunk can be read, without the index at the end of the file (crate `replay`). A recorder that was
