@@ -22,7 +22,9 @@ pub fn sentence(notice: &Notice) -> String {
              or model the longer part alone",
             *stamp_nanos as f64 * 1e-9
         ),
-        Notice::StepTakenBack => "a step made the fit worse: it was taken back, and what came before it stands".to_owned(),
+        Notice::StepTakenBack => {
+            "a step made the fit worse: it was taken back, and what came before it stands".to_owned()
+        }
         Notice::KeptSmoothed => "refinement made nothing better: the smoothed tracker is what is given out".to_owned(),
         Notice::NothingSeenTwice => {
             "too little was seen twice to refine anything: sweep over the same surface again, from other sides"
