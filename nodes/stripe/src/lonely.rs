@@ -63,7 +63,8 @@ impl Lonely {
         let is_held = |all: &Cells, run: &Run| all.around(run) >= config.min_support_lines;
         runs.iter().filter(|run| is_held(&self.all, run)).for_each(|run| self.held.mark(run));
         let before = runs.len();
-        runs.retain(|run| is_held(&self.all, run) || self.held.around(run) > 0);
+        // Most of what is kept is a line, and settled by the first look.
+        runs.retain(|run| self.held.around(run) > 0 || is_held(&self.all, run));
         (runs.len()..before).for_each(|_| refusals.count(Reason::Alone));
     }
 }

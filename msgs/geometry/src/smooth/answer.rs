@@ -58,16 +58,17 @@ impl Fitted {
     }
 }
 
-/// The smooth pose where it is sure enough, else the one between the two readings.
+/// The smooth pose where it is sure enough, else the one between the two readings; where readings are missing nobody asks
+/// for the smooth one.
 pub(super) fn judged(
     straight: Result<TimedPose, NoPose>,
-    smooth: Option<Smooth>,
+    smooth: impl FnOnce() -> Option<Smooth>,
     moment: Moment,
 ) -> Result<TimedPose, NoPose> {
     if let Err(NoPose::Before | NoPose::Gap) = straight {
         return straight;
     }
-    match (moment, smooth) {
+    match (moment, smooth()) {
         (Moment::Early, Some(smooth)) if smooth.variance <= EARLY_VARIANCE => Ok(smooth.pose),
         (Moment::Early, _) => Err(NoPose::After),
         (Moment::Due, Some(smooth)) if smooth.variance <= MOST_VARIANCE => Ok(smooth.pose),

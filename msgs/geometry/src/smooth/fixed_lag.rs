@@ -159,8 +159,7 @@ impl FixedLagSmoother {
         let fitted = self.fit(&position, &rotation, ends);
         let at = |&moment: &i64| {
             let straight = between(&position, &rotation, moment, self.config.most_gap_nanos());
-            let smooth = fitted.as_ref().and_then(|fitted| fitted.at(moment));
-            judged(straight, smooth, Moment::Due)
+            judged(straight, || fitted.as_ref()?.at(moment), Moment::Due)
         };
         Ok(moments.iter().map(at).collect())
     }
@@ -169,11 +168,7 @@ impl FixedLagSmoother {
     fn answer(&self, stamp_nanos: i64, end: usize, moment: Moment) -> Result<TimedPose, NoPose> {
         let (position, rotation) = self.around(stamp_nanos, end);
         let straight = between(&position, &rotation, stamp_nanos, self.config.most_gap_nanos());
-        if let Err(NoPose::Before | NoPose::Gap) = straight {
-            return straight;
-        }
-        let fitted = self.fit(&position, &rotation, stamp_nanos);
-        judged(straight, fitted.and_then(|fitted| fitted.at(stamp_nanos)), moment)
+        judged(straight, || self.fit(&position, &rotation, stamp_nanos)?.at(stamp_nanos), moment)
     }
 
     /// `None` before anything is known of the noise, or when the readings are too few.
